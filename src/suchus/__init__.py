@@ -27,10 +27,12 @@ if TYPE_CHECKING:
     from suchus.robot.control import CONTROLLERS as CONTROLLERS
     from suchus.robot.control import Coordinated as Coordinated
     from suchus.robot.control import HeadingRule as HeadingRule
+    from suchus.robot.control import Learned as Learned
     from suchus.robot.design import Robot as Robot
     from suchus.robot.gaits import GAITS as GAITS
     from suchus.robot.motion import Gait as Gait
     from suchus.robot.motion import swimming_gait as swimming_gait
+    from suchus.robot.policies import POLICIES as POLICIES
     from suchus.robot.robots import ROBOTS as ROBOTS
     from suchus.sim.fault import Fault as Fault
     from suchus.sim.faults import FAULTS as FAULTS
@@ -59,8 +61,9 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Catalog": "suchus.core.catalog",
-    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule"), "suchus.robot.control"),
+    **dict.fromkeys(("CONTROLLERS", "Coordinated", "HeadingRule", "Learned"), "suchus.robot.control"),
     "MEASURES": "suchus.experiments.study",
+    "POLICIES": "suchus.robot.policies",
     "PROTOCOLS": "suchus.hardware.protocols",
     "Robot": "suchus.robot.design",
     **dict.fromkeys(

@@ -35,7 +35,8 @@ class Catalog(Mapping[str, T], Generic[T]):
         scattered: whether a module may declare several, as ``measures = (speed, slip)``, each with a name of its own,
             and modules that declare none stand beside them.
         name_of: returns the name that a thing has by itself, which must be that in the catalog.
-        read_file: returns what a TOML file describes, where this catalog has such files.
+        read_file: returns what a file of data describes, where this catalog has such files.
+        suffix: ending of these files.
     """
 
     def __init__(
@@ -48,12 +49,13 @@ class Catalog(Mapping[str, T], Generic[T]):
         scattered: bool = False,
         name_of: Callable[[Any], str] | None = None,
         read_file: Callable[[Path], Any] | None = None,
+        suffix: str = ".toml",
     ) -> None:
         """Store the settings; neither file names nor modules are read yet."""
         self.kind = kind
         self._package, self._declares = package, declares
         self._classes, self._scattered = classes, scattered
-        self._name_of, self._read_file = name_of, read_file
+        self._name_of, self._read_file, self._suffix = name_of, read_file, suffix
         self._from_files: dict[Path, tuple[int, Any]] = {}
         self._loading = _LoadingFiles()
 
@@ -114,7 +116,7 @@ class Catalog(Mapping[str, T], Generic[T]):
         return thing
 
     def _load_file(self, source: Source) -> Any:
-        """Return what a TOML file describes; the value is cached until the file changes."""
+        """Return what a file of data describes; the value is cached until the file changes."""
         assert source.file is not None
         assert self._read_file is not None
         modified_ns = source.file.stat().st_mtime_ns
@@ -155,7 +157,7 @@ class Catalog(Mapping[str, T], Generic[T]):
     def file(self, value: Any, folder: str | Path = Path()) -> Path | None:
         """Return the file that a value names, None where it names none.
 
-        A path does, and a text that is not in the catalog, if it ends in .toml or a file has that name.
+        A path does, and a text that is not in the catalog, if it has the ending of such files or a file has that name.
 
         Args:
             value: value as a user gives it.
@@ -164,10 +166,10 @@ class Catalog(Mapping[str, T], Generic[T]):
         if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
             return None
         path = Path(folder) / value
-        return path if path.suffix == ".toml" or path_exists(path) else None
+        return path if path.suffix == self._suffix or path_exists(path) else None
 
     def resolve(self, value: Any, folder: str | Path = Path()) -> T:
-        """Return what a value stands for: itself, what carries its name in the catalog, or what a TOML file describes.
+        """Return what a value stands for: itself, what carries its name in the catalog, or what a file describes.
 
         Args:
             value: the thing, its name, or the path of its file.

@@ -1,7 +1,8 @@
 """Where things in the catalogs come from: the package, a project folder of the user's, other packages of the user's.
 
 A project is a folder with a ``suchus.toml``. Its sub-folders ``robots``, ``gaits``, ``faults``, ``experiments``,
-``controllers``, ``measures``, ``protocols`` and ``commands`` hold files as the catalogs of the package do.
+``controllers``, ``measures``, ``protocols``, ``policies`` and ``commands`` hold files as the catalogs of the package
+do.
 ``suchus.toml`` names files that stand elsewhere in the folder. A file is read, or a module run, when its name is asked
 for.
 
@@ -43,10 +44,11 @@ SHELVES: Mapping[str, str] = {
     "measures": "suchus.sim.metrics",
     "commands": "suchus.apps.commands",
     "protocols": "suchus.hardware.protocols",
+    "policies": "suchus.robot.policies",
 }
 """Package of each catalog by its folder in a project; the groups of entry points are ``suchus.robots`` and so on."""
-AS_TOML = ("robots", "gaits")
-"""Catalogs in which a TOML file can stand."""
+DATA_SUFFIXES: Mapping[str, str] = {"robots": ".toml", "gaits": ".toml", "policies": ".npz"}
+"""Ending of the files of data that can stand in a catalog, by catalog."""
 WITHOUT_RESULTS = ("commands",)
 """Catalogs of which no result is made, so that results stay valid when their files change."""
 
@@ -60,7 +62,7 @@ class Source:
     place: str
     """The file or the entry point, as messages name it."""
     module: str = ""
-    """Dotted name of the module that declares it; empty for a TOML file."""
+    """Dotted name of the module that declares it; empty for a file of data."""
     attribute: str = ""
     """Name in the module; empty for what the catalog's modules declare."""
     file: Path | None = None
@@ -93,7 +95,7 @@ class Project:
             if path.suffix in _suffixes(shelf) and path.is_file():
                 yield path.stem, path
             elif (path / "__init__.py").is_file():
-                yield path.name, _declaring(path, shelf.removesuffix("s"))
+                yield path.name, _declaring(path, kind_of(shelf))
 
     def shown(self, path: Path) -> str:
         """Return a path as messages name it: from the project's folder on."""
@@ -107,6 +109,16 @@ class Project:
                 for path in sorted(file.parent.rglob("*.py")) if _is_folder(name, file) else [file]:
                     text.update(self.shown(path).encode() + b"\0" + path.read_bytes() + b"\0")
         return text.hexdigest()[:12]
+
+
+def shelf_of(kind: str) -> str:
+    """Return the catalog of a kind of things: ``robots`` for ``robot``, ``policies`` for ``policy``."""
+    return f"{kind[:-1]}ies" if kind.endswith("y") else f"{kind}s"
+
+
+def kind_of(shelf: str) -> str:
+    """Return the kind of things in a catalog: ``robot`` for ``robots``, ``policy`` for ``policies``."""
+    return next(kind for kind in (f"{shelf[:-3]}y", shelf.removesuffix("s")) if shelf_of(kind) == shelf)
 
 
 def project(folder: str | os.PathLike[str] | None) -> Project | None:
@@ -223,7 +235,10 @@ def gather(kind: str, package: str, *, scattered: bool = False) -> dict[str, Sou
 def _shipped(package: str, kind: str, scattered: bool) -> Iterator[Source]:
     """Yield what the package itself has in a catalog."""
     if not scattered:
-        yield from _module_sources(package, kind, _stamped(package))
+        stamps = _stamped(package)
+        yield from _module_sources(package, kind, stamps)
+        if DATA_SUFFIXES.get(shelf_of(kind), ".toml") != ".toml":
+            yield from _data_sources(package, DATA_SUFFIXES[shelf_of(kind)], stamps)
         return
     for name, file in _modules(package, kind).items():
         if not name.startswith("_"):
@@ -236,6 +251,16 @@ def _module_sources(package: str, kind: str, stamped: "_Stamped") -> tuple[Sourc
     """Return what the modules of a package declare, one thing each."""
     files = _files(kind, stamped).items()
     return tuple(_of_package(package, name, file, name, "") for name, file in files if not name.startswith("_"))
+
+
+@lru_cache(maxsize=64)
+def _data_sources(package: str, suffix: str, stamped: "_Stamped") -> tuple[Source, ...]:
+    """Return the files of data in a package's folders."""
+    return tuple(
+        Source(name=file.stem, place=f"{package.replace('.', '/')}/{file.name}", file=file, shipped=True)
+        for folder, *_ in stamped
+        for file in sorted(Path(folder).glob(f"*{suffix}"))
+    )
 
 
 def _of_package(package: str, name: str, file: Path, thing: str, attribute: str) -> Source:
@@ -313,11 +338,11 @@ def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
     if opened is None:
         return
     package_modules = _modules(package, kind)
-    for name, file in opened.files(f"{kind}s"):
+    for name, file in opened.files(shelf_of(kind)):
         location = opened.shown(file)
         if file.suffix == ".py" and name in package_modules:
             raise AmbiguousName("module", name, f"{package.replace('.', '/')}/{name}", location)
-        if file.suffix == ".toml":
+        if file.suffix == DATA_SUFFIXES.get(shelf_of(kind)):
             yield Source(name=name, place=location, file=file)
         elif not name.startswith("_"):
             for thing, attribute in _names(file, kind) if scattered else ((name, ""),):
@@ -326,7 +351,7 @@ def _of_project(package: str, kind: str, scattered: bool) -> Iterator[Source]:
 
 def _plugged(kind: str) -> Iterator[Source]:
     """Yield what other installed packages put in a catalog by their entry points."""
-    for point in _entry_points().get(f"suchus.{kind}s", ()):
+    for point in _entry_points().get(f"suchus.{shelf_of(kind)}", ()):
         owner = point.dist.name if point.dist else "an installed package"
         location = f"the entry point {point.name} = {point.value!r} of {owner}"
         yield Source(name=point.name, place=location, module=point.module, attribute=point.attr)
@@ -408,7 +433,7 @@ def _declared_names(file: Path, kind: str, *_: int) -> tuple[tuple[str, str], ..
 
 
 def _suffixes(shelf: str) -> tuple[str, ...]:
-    return (".py", ".toml") if shelf in AS_TOML else (".py",)
+    return (".py", DATA_SUFFIXES[shelf]) if shelf in DATA_SUFFIXES else (".py",)
 
 
 # --- the folder ------------------------------------------------------------------------------------------------

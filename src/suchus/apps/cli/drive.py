@@ -47,6 +47,7 @@ from suchus.robot.control import (
     Control,
     Coordinated,
     HeadingRule,
+    Learned,
     OpenLoop,
     PatternGenerator,
     Standing,
@@ -56,6 +57,7 @@ from suchus.robot.control import (
 from suchus.robot.design import Robot
 from suchus.robot.gaits import default_gait, gait_of, suits
 from suchus.robot.motion import START, Gait
+from suchus.robot.policies import policy_of
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import swim_of
 from suchus.visual.figures import styled
@@ -87,6 +89,12 @@ class DriveOptions:
     control: Literal["open", "closed", "steered", "pattern", "stand", "swim"] = "open"
     """What decides: the gait alone, the three feedback rules, these and the heading loop, coupled oscillators, standing
     up and sitting down again, or a swim."""
+    policy: str | None = None
+    """A trained policy, its name or its file, in the place of gait and control."""
+    forward: float | None = None
+    """Commanded forward speed of the policy [m/s]; half of its greatest one by default."""
+    turn: float = 0.0
+    """Commanded turning rate of the policy, left positive [rad/s]."""
     seconds: float = 30.0
     """How long, the first second of standing included [s]."""
     rate: float | None = None
@@ -228,6 +236,11 @@ def _open_blind_rig(options: DriveOptions) -> Iterator[tuple[BlindRig, Any]]:
 def _movement(options: DriveOptions) -> tuple[Gait, Control]:
     """Return the gait and the controller that the options name."""
     robot = options.robot
+    if options.policy is not None:
+        if options.gait or options.control != "open":
+            raise BadCommand("--policy brings its own gait and decides alone: leave out the gait and --control.")
+        policy = policy_of(robot, options.policy)
+        return policy.gait, Learned(policy=policy, forward=options.forward, turn=options.turn)
     if options.gait == SWIM or (options.control == "swim" and not options.gait):
         gait, kind = swim_of(robot), "swim"
     else:

@@ -115,7 +115,7 @@ COMMANDS = (
         "suchus.apps.cli.view:view",
         first_word="robot",
         other_words=("swim",),
-        shelf_options=("robot", "gait"),
+        shelf_options=("robot", "gait", "policy"),
     ),
     Subcommand(
         "page",
@@ -152,6 +152,13 @@ COMMANDS = (
         "search for a better gait or body, resumable",
         "suchus.apps.cli.optimise:optimise",
         shelf_options=("robot",),
+    ),
+    Subcommand(
+        "train",
+        "TASK [--robot ROBOT] [--minutes 15]",
+        "train a policy that follows commands, resumable",
+        "suchus.apps.cli.train:train",
+        shelf_options=("robot", "gait"),
     ),
     Subcommand(
         "import",

@@ -18,8 +18,9 @@ from suchus.apps.cli.word_checks import option_values
 from suchus.core.errors import SuchusError, UnknownName
 from suchus.experiments.experiment import Experiment
 from suchus.robot.design import Robot
-from suchus.robot.gaits import gait_of
+from suchus.robot.gaits import GAITS, gait_of
 from suchus.robot.motion import Gait
+from suchus.robot.policies import POLICIES, SUFFIX, Policy, policy_of
 from suchus.robot.robots import ROBOTS
 
 _DEFAULT_ROBOT = "caiman"
@@ -77,6 +78,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     """
     is_quick = "--quick" in words
     start = experiment.quick() if is_quick else experiment
+    words = _policy_words(start, name, words)
     robot = _robot(words)
     if robot is not None:
         start = start.for_robot(robot)
@@ -97,6 +99,25 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
     return RunRequest(
         experiment=settings.experiment, quick=is_quick, out=settings.out, csv=settings.csv, json=settings.json
     )
+
+
+def _policy_words(experiment: Experiment, name: str, words: Sequence[str]) -> list[str]:
+    """Return the words with ``--policy`` in the place of ``--control`` where that names a policy.
+
+    ``--control`` of an experiment with two groups names the gait of the control group.
+
+    Raises:
+        BadCommand: the experiment takes no policy.
+    """
+    words = [part for word in words for part in ([*word.split("=", 1)] if word.startswith("--control=") else [word])]
+    for i, word in enumerate(words[:-1]):
+        value = words[i + 1]
+        is_policy = Path(value).suffix == SUFFIX or (value not in GAITS and value in POLICIES)
+        if word == "--control" and is_policy:
+            if not hasattr(experiment, "policy"):
+                raise BadCommand(f"the experiment {name} takes no policy; displacement does.")
+            words[i] = "--policy"
+    return words
 
 
 def _robot(words: Sequence[str]) -> Robot | None:
@@ -171,7 +192,7 @@ def parse(
 
 
 def _registry(default_robot: Callable[[], Robot]) -> ConstructorRegistry:
-    """Robots and gaits are named on the command line, or written in a file.
+    """Robots, gaits and policies are named on the command line, or written in a file.
 
     Args:
         default_robot: returns the robot for which a gait is read.
@@ -180,13 +201,17 @@ def _registry(default_robot: Callable[[], Robot]) -> ConstructorRegistry:
     robots: tuple[Any, ...] = (Robot, Robot | None)
     for kind in robots:
         registry.primitive_rule(_shelf_rule(kind, "ROBOT", "the record's", resolve_robot))
+    for kind in (Policy, Policy | None):
+        registry.primitive_rule(
+            _shelf_rule(kind, "POLICY", "none", lambda word: policy_of(default_robot(), word), SUFFIX)
+        )
     for kind in (Gait, Gait | None):
         registry.primitive_rule(_shelf_rule(kind, "GAIT", "own", lambda word: gait_of(default_robot(), word)))
     return registry
 
 
 def _shelf_rule(
-    kind: Any, metavar: str, default_label: str, resolve: Callable[[str], Any]
+    kind: Any, metavar: str, default_label: str, resolve: Callable[[str], Any], suffix: str = ".toml"
 ) -> Callable[[PrimitiveTypeInfo], PrimitiveConstructorSpec[Any] | None]:
     """Return the rule by which tyro reads a robot or a gait from one word.
 
@@ -195,11 +220,12 @@ def _shelf_rule(
         metavar: word that stands for the value in the help.
         default_label: how the help names the default None.
         resolve: returns what a word names.
+        suffix: ending of the files that may stand in the place of a name.
     """
     spec: PrimitiveConstructorSpec[Any] = PrimitiveConstructorSpec(
         nargs=1,
-        metavar=f"{metavar}|FILE.toml",
-        instance_from_str=lambda words: _resolve_word(_first_word(words), resolve),
+        metavar=f"{metavar}|FILE{suffix}",
+        instance_from_str=lambda words: _resolve_word(_first_word(words), resolve, suffix),
         is_instance=lambda value: isinstance(value, kind),
         str_from_instance=lambda value: [default_label if value is None else str(value.name)],
     )
@@ -219,12 +245,13 @@ def _first_word(words: Any) -> str:
     return words
 
 
-def _resolve_word(word: str, resolve: Callable[[str], Any]) -> Any:
-    """Return the object that a word names, by a name in the catalog or a file."""
+def _resolve_word(word: str, resolve: Callable[[str], Any], suffix: str) -> Any:
+    """Return the object that a word names, by a name in the catalog or a file with an ending."""
     try:
         return resolve(word)
     except UnknownName as error:
-        raise BadCommand(f"{error} A path to a TOML file will do as well.") from error
+        file_text = "TOML" if suffix == ".toml" else suffix
+        raise BadCommand(f"{error} A path to a {file_text} file will do as well.") from error
     except SuchusError as error:  # some are ValueErrors, which tyro would take for its own
         raise BadCommand(str(error)) from error
 

@@ -11,7 +11,7 @@ from textwrap import fill
 from suchus.apps.cli.command import REFUSAL
 from suchus.apps.cli.entry import PROJECT, BadCommand, reserved_names
 from suchus.core.errors import SuchusError
-from suchus.core.sources import SHELVES, Source, gather
+from suchus.core.sources import SHELVES, Source, gather, kind_of
 
 _LISTED = {
     "robots": "suchus.robot.robots:ROBOTS",
@@ -22,6 +22,7 @@ _LISTED = {
     "measures": "suchus.experiments.study:MEASURES",
     "commands": "suchus.apps.commands:COMMANDS",
     "protocols": "suchus.hardware.protocols:PROTOCOLS",
+    "policies": "suchus.robot.policies:POLICIES",
 }
 """Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")
@@ -39,9 +40,7 @@ def show(words: Sequence[str]) -> int:
         return 0
     if words:
         raise BadCommand(f"suchus list takes no {words[0]!r}.")
-    shelves = {
-        shelf: gather(shelf.removesuffix("s"), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED
-    }
+    shelves = {shelf: gather(kind_of(shelf), SHELVES[shelf], scattered=shelf in _SCATTERED) for shelf in _LISTED}
     width = max((len(name) for sources in shelves.values() for name in sources), default=0)
     for i, (shelf, sources) in enumerate((shelf, sources) for shelf, sources in shelves.items() if sources):
         print("\n" * bool(i) + shelf)
@@ -60,6 +59,8 @@ def title(source: Source) -> str:
     """Return the first line of the docstring of what is declared or of its module, or of a TOML file's comment."""
     if source.file is None:
         return ""
+    if source.file.suffix == ".npz":
+        return _policy_title(source)
     if source.file.suffix == ".toml":
         first_line = _text(source.file).lstrip().partition("\n")[0]
         return first_line.lstrip("# ") if first_line.startswith("#") else ""
@@ -70,6 +71,17 @@ def title(source: Source) -> str:
     definitions = [node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
     docstring_owner = next((node for node in definitions if node.name == source.attribute), tree)
     return (ast.get_docstring(docstring_owner) or "").partition("\n")[0]
+
+
+def _policy_title(source: Source) -> str:
+    """Return task, robot and commands of a policy; empty where its file cannot be read."""
+    try:
+        policy = resolve_name(_LISTED["policies"])[source.name]
+    except SuchusError:
+        return ""
+    return f"{policy.task} of {policy.robot}: up to {policy.max_speed:.3g} m/s and {policy.max_turn:.3g} rad/s, " + (
+        "a table and a network" if policy.layers else "a table"
+    )
 
 
 def _needs(source: Source) -> str:

@@ -11,6 +11,7 @@ import tyro
 from suchus.animals.capture import ReadingOptions, read_tracks
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
+from suchus.apps.cli.word_checks import option_values
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.replay import FilmedAnimal, Take, place_animal, takes
 from suchus.apps.viewer.swim import films, vortex_film
@@ -19,6 +20,7 @@ from suchus.core.files import path_exists
 from suchus.robot.design import Robot, check_needs
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
+from suchus.robot.policies import POLICIES, policy_of
 from suchus.robot.robots import ROBOTS
 from suchus.swimming.water import swim_of
 
@@ -53,6 +55,8 @@ class ViewWalkOptions(ServerOptions):
     """Time step of the physics [s], a whole fraction of the control period; by default half of the period."""
     lake: tyro.conf.FlagCreatePairsOff[bool] = False
     """Let the robot swim in a lake; the floating caiman if no robot is named."""
+    policy: str | None = None
+    """A trained policy, its name or its file, that two sliders command; its own robot if none is named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,9 +112,28 @@ def _walk(words: Sequence[str]) -> int:
     ]
     arguments = [*option_words, *words[len(positional) :]]
     options = parse(ViewWalkOptions, "suchus view", arguments, description)
-    if options.lake and not positional and "--robot" not in arguments:
+    is_robot_named = bool(positional) or bool(option_values(arguments, "--robot"))
+    if options.policy is not None and not is_robot_named:
+        options = replace(options, robot=_robot_of(options.policy))
+    elif options.lake and not is_robot_named:
         options = replace(options, robot=ROBOTS["floating_caiman"])
     return serve_walk(options)
+
+
+def _robot_of(policy_word: str) -> Robot:
+    """Return the robot for which a policy was trained.
+
+    Raises:
+        BadCommand: it is a robot of a file, which has to be named.
+    """
+    policy = POLICIES.resolve(policy_word)
+    if policy.robot not in ROBOTS:
+        raise BadCommand(
+            f"policy {policy.name!r} was trained for robot {policy.robot!r}, which is not in the catalog: name its "
+            f"file, as in suchus view {policy.robot}.toml --policy {policy_word}."
+        )
+    robot: Robot = ROBOTS[policy.robot]
+    return robot
 
 
 def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None = None) -> int:
@@ -125,13 +148,19 @@ def serve_walk(options: ViewWalkOptions, opened: Callable[[str], object] | None 
     """
     robot, gait = options.robot, options.gait or default_gait(options.robot)
     swim = swim_of(check_needs(robot, ["axis"], "suchus view --lake")) if options.lake else None
+    policy = None if options.policy is None else policy_of(robot, options.policy)
+    if policy is not None:
+        gait = policy.gait
+        swim = policy.gait if policy.task == "swim" else swim
 
     def session() -> Session:
-        return Session(robot, gait, timestep=options.timestep, swim=swim)
+        return Session(robot, gait, timestep=options.timestep, swim=swim, policy=policy)
 
     session()  # refuses an impossible walk before a browser opens
     pages = pages_of_viewer()
     setting = "in a lake" if options.lake else gait.name
+    if policy is not None:
+        setting = f"policy {policy.name}"
     return _serve(
         lambda client: pages.LivePage(client, session()), options, f"{robot.name}, {setting}", opened,
         camera=pages.camera(robot),
@@ -224,7 +253,7 @@ def _serve(
     return 0
 
 
-_HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--host HOST] [--port PORT]
+_HELP = """usage: suchus view [ROBOT] [GAIT] [--lake] [--policy POLICY] [--host HOST] [--port PORT]
        suchus view RECORD.nc [--ghost RECORD2.nc] [--animal TRACKS]
        suchus view swim RECORD.nc
 
@@ -239,6 +268,7 @@ or space likewise, with the angles that its joints took.
   --fps N          frames per second of the animal's film, if its file does not say
   --robot ROBOT    robot of a record, if `suchus list` does not show the one that the record names
   --lake           the robot swims in a lake, with sliders for the water level and the air in its hull
+  --policy POLICY  a trained policy, by name or file, that two sliders command
   --timestep S     time step of the physics of a live walk [s]; 0.005 by default
   --host HOST      address to listen on; 127.0.0.1 by default: only this computer can look
   --port PORT      port to listen on; 8080 by default, 0 for any free port

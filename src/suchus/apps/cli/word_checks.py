@@ -11,7 +11,7 @@ from pathlib import Path
 from suchus.apps.cli.entry import BadCommand, Subcommand
 from suchus.core.errors import UnknownName
 from suchus.core.reading import check_file, path_exists
-from suchus.core.sources import AS_TOML, SHELVES, Source, gather
+from suchus.core.sources import DATA_SUFFIXES, SHELVES, Source, gather, shelf_of
 from suchus.core.writing import check_replaceable, check_writable
 
 _HELP = ("-h", "--help")
@@ -91,14 +91,16 @@ def _check_name(kind: str, name: str) -> None:
     shelf = _shelf(kind)
     if name in shelf or name.startswith("-"):
         return
-    if f"{kind}s" not in AS_TOML:
+    if shelf_of(kind) not in DATA_SUFFIXES:
         raise UnknownName(kind, name, shelf)
-    if Path(name).suffix not in (".toml", ".nc") and not path_exists(Path(name)):
-        raise BadCommand(f"{UnknownName(kind, name, shelf)} A path to a TOML file will do as well.")
+    suffix = DATA_SUFFIXES[shelf_of(kind)]
+    if Path(name).suffix not in (suffix, ".nc") and not path_exists(Path(name)):
+        file_text = "TOML" if suffix == ".toml" else suffix
+        raise BadCommand(f"{UnknownName(kind, name, shelf)} A path to a {file_text} file will do as well.")
 
 
 def _shelf(kind: str) -> Mapping[str, Source]:
-    return gather(kind, SHELVES[f"{kind}s"], scattered=False)
+    return gather(kind, SHELVES[shelf_of(kind)], scattered=False)
 
 
 def _check_out(content: str, path: Path) -> None:

@@ -18,6 +18,7 @@ from suchus.apps.envs.actor import Actor
 from suchus.apps.envs.senses import Observer, is_crank
 from suchus.apps.envs.tanks import Tanks
 from suchus.apps.envs.task import AnyGoal, Task, Terms, remaining
+from suchus.apps.envs.tracking import Tracking
 from suchus.core import rotation
 from suchus.core.errors import Diverged, InvalidDesign
 from suchus.robot.control import Standing
@@ -150,6 +151,10 @@ class Chance:
     """The push; None: no push."""
     bearing: float = 0.0
     """Bearing of the goal from straight ahead, left positive [rad]."""
+    command_seed: int = 0
+    """Seed of the commands."""
+    noise_seed: int = 0
+    """Seed of the noise on the observations."""
 
     @property
     def fault(self) -> str:
@@ -230,14 +235,18 @@ class Pack:
             [task.robot.servo(name).speed for name in layout(task.robot).servos]
         )
         periods = round(task.decision / control_period(task.robot))
-        self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs))
+        delay = round(task.delay / control_period(task.robot))
+        self._actor = Actor(np.tile(self._begin.commanded, (count, 1)), periods, len(layout(task.robot).limbs), delay)
         if task.flow is None:
             run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
         else:
             run = Run(robot=task.body, gait=task.swimming_gait, water=task.flow)
-        self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor)
+        self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor, fast=task.fast)
         self._tanks = None if task.flow is None else Tanks(run, loop.batch, periods, loop.period)
-        self._observer = Observer(task.robot, count, goal=task.goal is not None)
+        self._observer = Observer(task.robot, count, task.observed)
+        self._tracking = Tracking(task, count)
+        self._needs_tracking = task.commands is not None or "tracking_error" in task.observed
+        self._has_further = self._needs_tracking or task.told
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
         self._command_change = np.zeros_like(self._commanded)
@@ -297,10 +306,12 @@ class Pack:
             self.loop.restart(i, beginning, faults, pushes)
             if self._tanks is not None:
                 self._tanks.restart(i, beginning, faults, pushes)
-            self._actor.target[i], self._command_change[i] = self._begin.commanded, 0.0
+            self._actor.restart(i, self._begin.commanded)
+            self._command_change[i] = 0.0
             self.chances[i], self.faults[i], self.causes[i] = chance, chance.fault, ""
             self._phases[i] = chance.phase
             self._set_goal(i)
+            self._tracking.restart(i, self._facing()[i])
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return the observation of each robot, see ``senses``."""
@@ -308,7 +319,41 @@ class Pack:
             self._cranks, self._command_change / self._max_crank_turn, (self._commanded - self.centre) / self.task.span
         )
         goal = None if self.task.goal is None else (self._offset(self.task.goal), self.remaining)
-        return self._observer.observe(self.loop.sensed(), self.phase, commanded, goal)
+        further = self._tracking.readings(self.command, self._failure_mask()) if self._has_further else None
+        rows = self._observer.observe(self.loop.sensed(), self.phase, commanded, goal, further)
+        return rows if self.task.noise == 0.0 else np.clip(rows + self._noise(rows.shape[1]), -1.0, 1.0)
+
+    @property
+    def command(self) -> Float[np.ndarray, "run 2"]:
+        """Commanded speed [m/s] and turning rate [rad/s] of each robot now; zeros without commands."""
+        if self.task.commands is None:
+            return np.zeros((self.count, 2))
+        times = self.time.tolist()
+        return np.array(
+            [
+                self.task.commands.command(chance.command_seed, time)
+                for chance, time in zip(self.chances, times, strict=True)
+            ]
+        )
+
+    def _facing(self) -> Float[np.ndarray, " run"]:
+        """Return the yaw of each robot's IMU [rad]."""
+        return rotation.yaw(self.loop.sensors["imu_orientation"])
+
+    def _failure_mask(self) -> Float[np.ndarray, "run servo"]:
+        """Return 1 for each servo whose fault has begun [-]."""
+        mask, servos = np.zeros_like(self._commanded), layout(self.task.robot).servos
+        for i, chance in enumerate(self.chances):
+            if chance.broken is not None and chance.broken.part in servos:
+                mask[i, servos.index(chance.broken.part)] = float(self.time[i] >= chance.broken.at - 1e-9)
+        return mask
+
+    def _noise(self, columns: int) -> Float[np.ndarray, "run n"]:
+        """Return the noise on the observations of this instant; it depends on each robot's seed and time alone."""
+        ticks = self.loop.clocks.tolist()
+        seeds = [chance.noise_seed for chance in self.chances]
+        rows = [np.random.default_rng([s, t]).standard_normal(columns) for s, t in zip(seeds, ticks, strict=True)]
+        return np.asarray(self.task.noise * np.array(rows), dtype=np.float32)
 
     def act(self, actions: Float[np.ndarray, "run servo"], active_mask: Bool[np.ndarray, " run"]) -> Terms:
         """Let the chosen robots act for one step; the terms of the others have no meaning.
@@ -347,6 +392,10 @@ class Pack:
                 )  # contact loads are read at the end of the action only
                 work += self.loop.batch.effort[..., ABSOLUTE_POWER].sum(axis=1) * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
+        if self._needs_tracking:
+            moved = self.loop.sensors["centre_of_mass"] - last_position
+            lag = self._commanded - self.loop.sensed().servo_position
+            self._tracking.step(active_mask, moved, self._facing(), self.command, lag)
         return self._terms(active_mask, last_position, last_goal_distance, work, (command_change**2).sum(axis=1))
 
     def record(self, robot: int) -> xr.Dataset:
@@ -405,6 +454,7 @@ class Pack:
         has_fallen = is_low | (level < self.task.least_level)
         goal_distance = self.remaining
         has_reached = active_mask & (goal_distance <= 0.0) & ~(has_fallen | diverged) & (self.task.goal is not None)
+        tracking_errors = self._tracking.errors(self.command)
         for i in np.flatnonzero(active_mask & (has_fallen | diverged)):
             self.causes[i] = self._end_cause(int(i), bool(diverged[i]), float(height[i]), float(level[i]))
         for i in np.flatnonzero(has_reached):
@@ -418,6 +468,8 @@ class Pack:
             approach=np.where(diverged, 0.0, last_goal_distance - goal_distance),
             goal=has_reached,
             fall=has_fallen | diverged,
+            speed_error=np.where(diverged, 0.0, tracking_errors[:, 0]),
+            turn_error=np.where(diverged, 0.0, tracking_errors[:, 1]),
         )
 
     def _end_cause(self, robot: int, diverged: bool, height: float, level: float) -> str:
@@ -461,4 +513,8 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
             body=task.pushes.pushed_body(task.robot),
         )
         chance = replace(chance, push=push)
+    if task.commands is not None:
+        chance = replace(chance, command_seed=int(random.integers(2**31)))
+    if task.noise > 0.0:
+        chance = replace(chance, noise_seed=int(random.integers(2**31)))
     return chance

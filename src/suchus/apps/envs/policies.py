@@ -59,13 +59,13 @@ class GaitFollower:
     def __call__(self, observations: Float[np.ndarray, "run n"]) -> Float[np.ndarray, "run servo"]:
         """Return the actions that bring the servos to the gait's angles at the end of the step."""
         task, gait, robot = self.task, self.gait, self.task.robot
-        sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
+        sine, cosine = reading_columns(observations, "clock", robot, task.observed).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.gait.period
         targets = cycle_targets(robot, gait, clock)
         actions = (targets - np.array(self.centre)) / task.span
         cranks = is_crank(robot)
         if cranks.any():
-            crank_error = targets - np.pi * reading_columns(observations, "servo_position", robot)
+            crank_error = targets - np.pi * reading_columns(observations, "servo_position", robot, task.observed)
             speed = np.array([robot.servo(name).speed for name in layout(robot).servos])
             crank_actions = (np.mod(crank_error + np.pi, 2 * np.pi) - np.pi) / (task.decision * speed)
             actions = np.where(cranks, crank_actions, actions)
@@ -87,9 +87,9 @@ class SwimToGoal:
         """Return the actions that bring the servos to the steered swim's angles at the end of the step."""
         task, robot = self.task, self.task.robot
         swim = movement(robot, task.swimming_gait)
-        sine, cosine = reading_columns(observations, "clock", robot).astype(float).T
+        sine, cosine = reading_columns(observations, "clock", robot, task.observed).astype(float).T
         clock = np.arctan2(sine, cosine) / (2 * np.pi) + task.decision / task.period
-        direction = reading_columns(observations, "goal_direction", robot).astype(float)
+        direction = reading_columns(observations, "goal_direction", robot, task.observed).astype(float)
         hinge_counts = np.clip(self.hold.gain * np.arctan2(direction[:, 1], direction[:, 0]), -1.0, 1.0)
         steer = Steer(bend=self.hold.trunk_turn * hinge_counts, tail=self.hold.turn * hinge_counts)
         phases = clock[:, None] + np.array(swim.gaits[0].limb_phases)

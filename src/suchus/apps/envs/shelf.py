@@ -7,8 +7,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
-from suchus.apps.envs.task import AnyGoal, Breaks, Goal, Landing, Pushes, Rewards, Task
+from suchus.apps.envs.task import AnyGoal, Breaks, Commands, Goal, Landing, Pushes, Rewards, Task
 from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
+from suchus.robot.control.observation import FAILURE_READINGS, ROBOT_READINGS
 from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS, gait_of
 from suchus.robot.motion import Gait
@@ -59,6 +60,24 @@ TASKS: Mapping[str, Task] = MappingProxyType(
             pushes=Pushes(),
         ),
         "Fault": replace(_CRAWL, breaks=Breaks()),
+        "Velocity": replace(
+            _CRAWL,
+            gait=GAITS["low_crawl"],
+            commands=Commands(),
+            readings=tuple(name for name in ROBOT_READINGS if name not in FAILURE_READINGS),
+            rewards=Rewards(
+                forward=0.0,
+                lateral_drift=0.0,
+                upright=0.0,
+                work=-0.01,
+                action_rate=-0.002,
+                fall=-5.0,
+                speed_error=-10.0,
+                turn_error=-4.0,
+            ),
+            delay=0.02,
+            noise=0.01,
+        ),
         "Swim": _SWIM,
         "Shore": replace(
             _SWIM,
@@ -107,6 +126,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),
         "pushes": (Pushes, type(None)),
+        "commands": (Commands, type(None)),
         "lake": (Lake, type(None)),
         "water": (str, Slice, Space),
         "swim": (Gait, type(None)),

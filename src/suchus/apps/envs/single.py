@@ -17,6 +17,7 @@ from suchus.apps.envs.senses import senses
 from suchus.apps.envs.shelf import resolve_task
 from suchus.apps.envs.task import TERMS, AnyGoal, Landing, Task, Terms
 from suchus.core.errors import OutsideLimits, UnknownName
+from suchus.robot.control.observation import observation_layout
 from suchus.robot.design import Robot, layout
 from suchus.robot.robots import size_relative_to_article
 from suchus.sim.land.lake import up_direction
@@ -31,9 +32,16 @@ def action_space(robot: Robot) -> Any:
     return gymnasium.spaces.Box(-1.0, 1.0, (len(layout(robot).servos),), np.float32)
 
 
-def observation_space(robot: Robot, *, goal: bool = False) -> Any:
-    """Return the ``gymnasium.spaces.Box`` of a robot's observations, with or without a goal: see ``senses.senses``."""
-    return gymnasium.spaces.Box(-1.0, 1.0, (senses(robot, goal=goal)[-1].columns.stop,), np.float32)
+def observation_space(robot: Robot, *, goal: bool = False, readings: tuple[str, ...] | None = None) -> Any:
+    """Return the ``gymnasium.spaces.Box`` of a robot's observations.
+
+    Args:
+        robot: the robot.
+        goal: whether the task has a goal, see ``senses.senses``.
+        readings: readings of the observation, as ``Task.observed``; None for those of a task with or without a goal.
+    """
+    columns = senses(robot, goal=goal) if readings is None else observation_layout(robot, readings)
+    return gymnasium.spaces.Box(-1.0, 1.0, (columns[-1].columns.stop,), np.float32)
 
 
 def checked(actions: Any, shape: tuple[int, ...]) -> Float[np.ndarray, "*b servo"]:
@@ -82,7 +90,7 @@ class CrocodileEnv(gymnasium.Env):  # type: ignore[misc]  # gymnasium is not rea
         self.task = resolve_task(task, changes)
         self.pack = Pack(self.task, 1)
         self.action_space = action_space(self.task.robot)
-        self.observation_space = observation_space(self.task.robot, goal=self.task.goal is not None)
+        self.observation_space = observation_space(self.task.robot, readings=self.task.observed)
         self.render_mode = render_mode
         self.metadata = metadata(self.task)
 

@@ -11,6 +11,13 @@ from jaxtyping import Bool, Float
 
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, UnknownName
+from suchus.robot.control.observation import (
+    BASIC_READINGS,
+    COMMAND_READINGS,
+    FAILURE_READINGS,
+    GOAL_READINGS,
+    observation_layout,
+)
 from suchus.robot.design import (
     STANDING,
     Robot,
@@ -178,6 +185,10 @@ class Rewards:
     """Weight of the decrease of the distance that remains to ``Task.goal`` [1/m]."""
     goal: float = 0.0
     """Added once, when the goal is reached [-]."""
+    speed_error: float = 0.0
+    """Weight of the error of the speed over time; negative, a penalty [1/m]."""
+    turn_error: float = 0.0
+    """Weight of the error of the turning rate over time; negative, a penalty [-]."""
 
     def __post_init__(self) -> None:
         with Checks("rewards", self) as check:
@@ -205,6 +216,12 @@ class Terms:
     """Whether the goal is reached [-]."""
     fall: Bool[np.ndarray, " run"]
     """Whether it fell, or the simulation diverged [-]."""
+    speed_error: Float[np.ndarray, " run"]
+    """Size of the error of the speed, averaged over half a cycle, times the time of the step; 0 without a command
+    [m]."""
+    turn_error: Float[np.ndarray, " run"]
+    """Size of the error of the turning rate, averaged likewise, times the time of the step; 0 without a command
+    [rad]."""
 
     @property
     def is_over(self) -> Bool[np.ndarray, " run"]:
@@ -297,6 +314,34 @@ class Breaks:
     def _fault(kind: str, joint: str) -> Fault:
         make: Callable[[str], Fault] = FAULTS[kind]
         return make(joint)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Commands:
+    """Forward speeds and turning rates that are commanded, drawn anew from time to time."""
+
+    forward: tuple[float, float] = (0.0, 0.2)
+    """Least and greatest commanded forward speed [m/s]."""
+    turn: tuple[float, float] = (-0.3, 0.3)
+    """Least and greatest commanded turning rate, left positive [rad/s]."""
+    interval: float = 5.0
+    """Time between two commands, 0.1 to 3600 [s]."""
+
+    def __post_init__(self) -> None:
+        with Checks("commands", self) as check:
+            check.range("forward", -10.0, 10.0, "m/s")
+            check.range("turn", -10.0, 10.0, "rad/s")
+            check.number("interval", 0.1, 3600.0, "s")
+
+    def command(self, seed: int, time: float) -> tuple[float, float]:
+        """Return the commanded speed [m/s] and turning rate [rad/s] at a time.
+
+        Args:
+            seed: seed of the episode.
+            time: time since its beginning [s].
+        """
+        random = np.random.default_rng([seed, int(time / self.interval + 1e-9)])
+        return float(random.uniform(*self.forward)), float(random.uniform(*self.turn))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -398,11 +443,36 @@ class Task:
     """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20), see ``water.swim_of``."""
     goal: AnyGoal | None = None
     """The goal, at which the episode ends; None: no goal."""
+    commands: Commands | None = None
+    """Speeds and turning rates that are commanded; None: no commands."""
+    told: bool = False
+    """Whether the observation says which servo has failed."""
+    readings: tuple[str, ...] | None = None
+    """Readings of the observation, in the order of their columns; None: those of ``observed`` for the task's goal,
+    commands and failures."""
+    delay: float = 0.0
+    """Time by which commanded angles reach the servos late, whole control periods, 0 to 0.2 [s]."""
+    noise: float = 0.0
+    """Standard deviation of white noise on every column of the observation, 0 to 1 [scale of the reading]."""
+    fast: bool = False
+    """Whether contacts are solved in less time and with less accuracy, see ``suchus.simulate``; for training."""
 
     @property
     def body(self) -> Robot:
         """The robot as its physics has it: with the torque-speed lines if ``speed_lines`` is true."""
         return with_speed_lines(self.robot) if self.speed_lines else with_servos(self.robot, with_full_torque)
+
+    @property
+    def observed(self) -> tuple[str, ...]:
+        """Readings of the observation, in the order of their columns."""
+        if self.readings is not None:
+            return self.readings
+        return (
+            *BASIC_READINGS,
+            *(GOAL_READINGS if self.goal is not None else ()),
+            *(COMMAND_READINGS if self.commands is not None else ()),
+            *(FAILURE_READINGS if self.told else ()),
+        )
 
     @property
     def flow(self) -> Slice | Space | None:
@@ -445,11 +515,11 @@ class Task:
         time_factor = control_period(robot) / control_period(self.robot)
         changes: dict[str, Any] = {}
         if time_factor != 1.0:
-            changes = {name: round(time_factor * getattr(self, name), 12) for name in ("decision", "timestep")}
+            changes = {name: round(time_factor * getattr(self, name), 12) for name in ("decision", "timestep", "delay")}
         if time_factor != 1.0 or not suits(robot, self.gait):
             changes |= rescale_fields(self, ["least_height"], length_factor=length_factor, mass_factor=mass_factor)
             changes |= {"gait": gait or default_gait(robot)}
-            for name in ("rewards", "breaks", "pushes", "goal"):
+            for name in ("rewards", "breaks", "pushes", "goal", "commands"):
                 if getattr(self, name) is not None:
                     changes[name] = rescale(getattr(self, name), length_factor=length_factor, mass_factor=mass_factor)
             if self.lake is not None:
@@ -493,6 +563,29 @@ class Task:
             check.number("jitter", 0.0, 0.5, "rad")
             check.number("least_level", -1.0, 1.0, "")
             check.number("least_height", 0.0, 10.0, "m")
+            check.number("noise", 0.0, 1.0, "")
+            check.number("delay", 0.0, 20 * period, "s")
+            periods = self.delay / period if isinstance(self.delay, (int, float)) else 0.0
+            check.that(
+                abs(periods - round(periods)) < 1e-6,
+                f"task.delay is {self.delay} s; whole control periods of {period} s are allowed",
+            )
+            without_source = [
+                name
+                for names, has_source in (
+                    (GOAL_READINGS, self.goal is not None),
+                    (COMMAND_READINGS, self.commands is not None),
+                    (FAILURE_READINGS, self.told),
+                )
+                if not has_source
+                for name in names
+                if name in self.observed
+            ]
+            check.that(
+                not without_source,
+                f"task.readings has {', '.join(without_source)}, which need a goal, commands or told in the task: give "
+                "it, or leave them out",
+            )
             for name, multiple, divisor in (
                 ("decision", self.decision, period),
                 ("timestep", period, self.timestep),
@@ -503,6 +596,7 @@ class Task:
                     f"task.{name} is {getattr(self, name)} s; it must fit the control period of {period} s "
                     "a whole number of times",
                 )
+        observation_layout(self.robot, self.observed)
         if self.breaks is not None:
             self.breaks.candidate_servos(self.robot)
         if self.lake is not None:

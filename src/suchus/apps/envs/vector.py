@@ -61,7 +61,7 @@ class CrocodileVectorEnv(gymnasium.vector.VectorEnv):  # type: ignore[misc]  # g
         self.metadata = {**metadata(self.task), "autoreset_mode": self.autoreset_mode}
         robot = self.task.robot
         self.single_action_space = action_space(robot)
-        self.single_observation_space = observation_space(robot, goal=self.task.goal is not None)
+        self.single_observation_space = observation_space(robot, readings=self.task.observed)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._randoms = [seeding.np_random()[0] for _ in range(num_envs)]

@@ -6,6 +6,7 @@ from math import isfinite, radians
 from types import MappingProxyType
 
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
+from suchus.robot.control import Policy
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.motion import Gait, check_limits
 from suchus.robot.robots import size_relative_to_article
@@ -153,6 +154,22 @@ AIR_FRACTION = Knob(
     label="air fraction", unit="%", low=0.0, high=100.0, step=1.0, scale=1e-2,
     hint="Share of the hull's air that is kept; less of it sinks.",
 )  # fmt: skip
+
+
+def command_knobs(policy: Policy) -> dict[str, Knob]:
+    """Return the knobs of the commanded speed and turning rate: as far as a policy was trained."""
+    max_speed, max_turn = (_rounded(float(value)) for value in (policy.max_speed, policy.max_turn))
+    lower_speed = _rounded(policy.speeds[0])
+    return {
+        "forward": Knob(
+            label="forward", unit="m/s", low=lower_speed, high=max_speed, step=_rounded((max_speed - lower_speed) / 50),
+            hint="Commanded forward speed.",
+        ),
+        "turn": Knob(
+            label="turn to the left", unit="rad/s", low=-max_turn, high=max_turn, step=_rounded(max_turn / 25),
+            hint="Commanded turning rate; to the right where negative.",
+        ),
+    }  # fmt: skip
 
 
 def force_on(robot: Robot) -> Knob:

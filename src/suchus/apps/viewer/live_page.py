@@ -86,14 +86,18 @@ class Controls:
         self._switches: dict[str, Any] = {}
         self._sliders: dict[str, Any] = {}
         self._playback()
-        with gui.add_folder("Conditions and feedback"):
-            for switch, label, hint in _SWITCHES:
-                self._add_switch(switch, label, hint)
-        with gui.add_folder("Gait"):
-            self._gaits()
-            for name, knob in knobs_of(session.robot, session.settings.gait).items():
-                self._add_slider(name, knob, self._gait_value, session.tune)
-        self._files(save)
+        if session.settings.policy is None:
+            with gui.add_folder("Conditions and feedback"):
+                for switch, label, hint in _SWITCHES:
+                    self._add_switch(switch, label, hint)
+            with gui.add_folder("Gait"):
+                self._gaits()
+                for name, knob in knobs_of(session.robot, session.settings.gait).items():
+                    self._add_slider(name, knob, self._gait_value, session.tune)
+            self._files(save)
+        else:
+            with gui.add_folder(f"Policy {session.settings.policy.name}"):
+                self._add_settings("forward", "turn")
         with gui.add_folder("Break a joint"):
             self._faults()
         with gui.add_folder("Push"):
@@ -103,7 +107,8 @@ class Controls:
             self._add_settings("uphill", "sideways", "bumps")
         if session.settings.swim is not None:
             with gui.add_folder("Water"):
-                self._add_switch("swims", "swims", "Off: it walks, on the ground or against the water.")
+                if session.settings.policy is None:
+                    self._add_switch("swims", "swims", "Off: it walks, on the ground or against the water.")
                 self._add_settings("level", "air_fraction")
 
     @property
@@ -214,7 +219,8 @@ class Controls:
 
     def _add_settings(self, *names: str) -> None:
         """Add a slider for each of some numbers of ``Settings``."""
-        knobs, session = plain_knobs(self._session.robot), self._session
+        session = self._session
+        knobs = plain_knobs(session.robot, session.settings.policy)
         for name in names:
             self._add_slider(
                 name, knobs[name], lambda n: round(getattr(session.settings, n) / knobs[n].scale, 9), session.set_number

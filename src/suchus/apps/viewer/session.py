@@ -18,12 +18,13 @@ from suchus.apps.viewer.knobs import (
     SPEED,
     Knob,
     bumps_under,
+    command_knobs,
     force_on,
     push_on,
     tune_gait,
 )
 from suchus.core.errors import Diverged, SuchusError
-from suchus.robot.control import LAWS, Coordinated, HeadingRule, Swimming
+from suchus.robot.control import LAWS, Coordinated, HeadingRule, Learned, Policy, Swimming
 from suchus.robot.design import Robot, front_segment, layout
 from suchus.robot.design.ground import BUMPS_START, Bumps
 from suchus.robot.design.scale import coarse_step, control_period
@@ -79,6 +80,12 @@ class Settings:
     """Share of the hull's air that is kept [-]."""
     broken: tuple[Fault, ...] = ()
     """Faults, each from the beginning of the next walk on."""
+    policy: Policy | None = None
+    """Trained policy that decides; None for the gait and the rules that are on."""
+    forward: float = 0.0
+    """Commanded forward speed of the policy [m/s]."""
+    turn: float = 0.0
+    """Commanded turning rate of the policy, left positive [rad/s]."""
 
     def walking_gait(self, robot: Robot) -> Gait:
         """Return the gait of a robot with the switches of spine and tail."""
@@ -88,7 +95,9 @@ class Settings:
         return divide_axis(robot, self.gait).straightened(*straight_chains)
 
     def current_gait(self, robot: Robot) -> Gait:
-        """Return the gait in which a robot moves now: that of its swim, or that of its walk."""
+        """Return the gait in which a robot moves now: that of its policy, of its swim, or of its walk."""
+        if self.policy is not None:
+            return self.policy.gait
         return self.swim if self.swim is not None and self.swims else self.walking_gait(robot)
 
     @property
@@ -97,8 +106,12 @@ class Settings:
         return None if self.swim is None else Lake(level=self.level, air_fraction=self.air_fraction)
 
     @property
-    def control(self) -> Coordinated | Swimming:
-        """The swim, or the rules that are on."""
+    def control(self) -> Coordinated | Learned | Swimming:
+        """The policy, the swim, or the rules that are on; a policy is told of the servos that have failed."""
+        if self.policy is not None:
+            parts = [fault.part for fault in self.broken if fault.part in self.policy.servos]
+            failures = tuple((0.0, part) for part in parts) if "failure" in self.policy.readings else ()
+            return Learned(policy=self.policy, forward=self.forward, turn=self.turn, failures=failures)
         if self.swim is not None and self.swims:
             return Swimming()
         rules = Coordinated() if self.coordination else _OPEN
@@ -118,9 +131,10 @@ _PLAIN: dict[str, Knob] = {
 }  # fmt: skip
 
 
-def plain_knobs(robot: Robot) -> dict[str, Knob]:
-    """Return the knobs of the fields of ``Settings`` that are numbers, for a robot."""
-    return {**_PLAIN, "bumps": bumps_under(robot), "force": force_on(robot)}
+def plain_knobs(robot: Robot, policy: Policy | None = None) -> dict[str, Knob]:
+    """Return the knobs of the fields of ``Settings`` that are numbers, for a robot and its policy."""
+    commands = {} if policy is None else command_knobs(policy)
+    return {**_PLAIN, "bumps": bumps_under(robot), "force": force_on(robot), **commands}
 
 
 @dataclass(slots=True)
@@ -151,17 +165,31 @@ class Session:
         gait: the gait at the beginning.
         timestep: time step of the physics [s]; the one for many runs of a robot of its size if None.
         swim: gait in which it swims in a lake; None on dry land.
+        policy: trained policy that decides; it begins at half of its greatest speed. None for the gait.
 
     Raises:
         OutsideLimits: the robot's joints cannot follow the gait, or the swim.
         InvalidDesign: the time step does not divide the control period.
+        UnsuitedRobot: the policy was trained for another robot.
     """
 
-    def __init__(self, robot: Robot, gait: Gait, *, timestep: float | None = None, swim: Gait | None = None) -> None:
+    def __init__(
+        self,
+        robot: Robot,
+        gait: Gait,
+        *,
+        timestep: float | None = None,
+        swim: Gait | None = None,
+        policy: Policy | None = None,
+    ) -> None:
+        if policy is not None:
+            policy.check_robot(robot)
         check_limits(robot, gait)
         self.robot = robot
         length_ratio = size_relative_to_article(robot).length
-        self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim)
+        self.settings = Settings(gait=gait, force=push_on(robot), size=length_ratio, swim=swim, policy=policy)
+        if policy is not None:
+            self.settings = replace(self.settings, forward=float(f"{policy.max_speed / 2:.2g}"))
         self.walk_count = 0
         self._timestep = coarse_step(robot) if timestep is None else timestep
         self._period = control_period(robot)
@@ -212,13 +240,15 @@ class Session:
             name: a field of ``Settings`` that is a number.
             value: value in the unit of its knob; anything.
         """
-        knob = plain_knobs(self.robot)[name]
+        knob = plain_knobs(self.robot, self.settings.policy)[name]
         with self._lock:
             number, notice = knob.clip(value, getattr(self.settings, name) / knob.scale)
             changes: dict[str, Any] = {name: number * knob.scale}
             last_settings, self.settings = self.settings, replace(self.settings, **changes)
             if name == "bumps" and self.settings.bumps != last_settings.bumps:
                 self._begin()
+            elif name in ("forward", "turn"):
+                return self._change(self.settings) or notice
             elif name in ("uphill", "sideways"):
                 self._live.tilt(self.settings.ground)
             elif name in ("level", "air_fraction") and self.settings.lake is not None:
@@ -241,7 +271,7 @@ class Session:
                 return str(error)
             other_faults = self._faults_except(part_name)
             self.settings = replace(self.settings, broken=(*other_faults, fault))
-            return ""
+            return self._tell_policy()
 
     def repair_part(self, part_name: str | None = None) -> None:
         """Repair a part, or all of them."""
@@ -251,6 +281,11 @@ class Session:
                     self._live.mend(fault.part)
             other_faults = () if part_name is None else self._faults_except(part_name)
             self.settings = replace(self.settings, broken=other_faults)
+            self._tell_policy()
+
+    def _tell_policy(self) -> str:
+        """Tell a policy that knows of failures which servos have failed; return a sentence if that cannot be."""
+        return "" if self.settings.policy is None else self._change(self.settings)
 
     @property
     def present_faults(self) -> tuple[Fault, ...]:

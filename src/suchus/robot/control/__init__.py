@@ -7,11 +7,13 @@ from suchus.robot.control.controller import SENSED, Command, Control, Controller
 from suchus.robot.control.coordinated import Coordinated, Kick
 from suchus.robot.control.heading import HeadingRule
 from suchus.robot.control.holding import DepthHold, HeadingHold
+from suchus.robot.control.learned import Learned
 from suchus.robot.control.limbs import LAWS, LimbLaw
 from suchus.robot.control.open_loop import OpenLoop
 from suchus.robot.control.oscillators import Oscillators
 from suchus.robot.control.pattern_generator import Generator, OscillatorStates, PatternGenerator, oscillate
 from suchus.robot.control.pattern_load import LoadRule
+from suchus.robot.control.policy import ACTIONS, Policy, load_policy, save_policy
 from suchus.robot.control.sensed import Sensed
 from suchus.robot.control.shared import OWNERS, Shared
 from suchus.robot.control.spine import SpineRule
@@ -29,6 +31,7 @@ CONTROLLERS: Catalog[type[Control]] = Catalog(
 """The controls by name, ``pattern_generator`` for ``PatternGenerator``: classes of values for ``Run.control``."""
 
 __all__ = [
+    "ACTIONS",
     "BALANCE",
     "CONTROLLERS",
     "CURVES",
@@ -48,6 +51,7 @@ __all__ = [
     "HeadingHold",
     "HeadingRule",
     "Kick",
+    "Learned",
     "LimbLaw",
     "LoadRule",
     "OpenLoop",
@@ -55,6 +59,7 @@ __all__ = [
     "Oscillators",
     "PatternGenerator",
     "PitchHold",
+    "Policy",
     "Runs",
     "Sensed",
     "Shared",
@@ -65,7 +70,9 @@ __all__ = [
     "TailRule",
     "TurningCurve",
     "Walking",
+    "load_policy",
     "needs",
     "oscillate",
+    "save_policy",
     "turn",
 ]

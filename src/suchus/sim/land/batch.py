@@ -27,6 +27,8 @@ from suchus.sim.model.wet import wet_model
 from suchus.sim.record import EFFORT
 
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
+FAST_ITERATIONS = 10
+"""Iterations of the contact solver in fast physics [-]."""
 _SERVO_FIELDS = ("actuator_gainprm", "actuator_biasprm", "actuator_forcerange")
 _CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
 
@@ -51,8 +53,14 @@ class SimulationBatch:
     robots or reliefs differ, each has a model (``Batch.set_models``), which runs share until one's values change.
     """
 
-    def __init__(self, runs: Sequence[Run], timestep: float) -> None:
-        """Compile the models, bind the physics' arrays, and apply ground, supply and medium of each run."""
+    def __init__(self, runs: Sequence[Run], timestep: float, *, fast: bool = False) -> None:
+        """Compile the models, bind the physics' arrays, and apply ground, supply and medium of each run.
+
+        Args:
+            runs: runs of one group.
+            timestep: time step of the physics [s].
+            fast: whether contacts are solved in less time and with less accuracy, see ``simulate``.
+        """
         corrections = [None if run.lake is None else run.lake.correction for run in runs]
         bodies = [(run.robot, run.ground.relief, correction) for run, correction in zip(runs, corrections, strict=True)]
         has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
@@ -60,7 +68,9 @@ class SimulationBatch:
             wetting.install()
         max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
         is_solved = runs[0].solved_flow is not None
-        models = {body: _model(body, timestep, max_pieces, is_solved=is_solved) for body in dict.fromkeys(bodies)}
+        models = {
+            body: _model(body, timestep, max_pieces, is_solved=is_solved, fast=fast) for body in dict.fromkeys(bodies)
+        }
         shared = models[bodies[0]]
         self.model = shared
         self._single = len(models) == 1
@@ -440,6 +450,7 @@ def _model(
     max_pieces: int,
     *,
     is_solved: bool = False,
+    fast: bool = False,
 ) -> Any:
     """Return a compiled model without island discovery, with a table of water pieces if ``max_pieces`` is above 0.
 
@@ -450,6 +461,7 @@ def _model(
         timestep: time step of the physics [s].
         max_pieces: pieces that the table of the water has room for; 0 on dry land.
         is_solved: whether a flow solver computes the water.
+        fast: whether contacts are solved in less time and with less accuracy.
     """
     robot, relief, correction = body
     if max_pieces:
@@ -460,4 +472,9 @@ def _model(
     if correction is not None:
         correct(model, correction)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+    if fast:
+        model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
+        model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
+        model.opt.iterations = FAST_ITERATIONS
+        model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     return model

@@ -6,8 +6,9 @@ from math import inf
 import numpy as np
 
 from suchus.core.errors import Diverged, InvalidDesign
-from suchus.robot.control import Coordinated, Swimming
+from suchus.robot.control import Coordinated, Learned, Swimming
 from suchus.robot.control.coordinated import Coordinator
+from suchus.robot.control.learned import LearnedController
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.scale import check_step, control_period, physics_step
 from suchus.robot.motion import START, Gait, check_limits
@@ -29,8 +30,8 @@ class Live:
         timestep: time step of the physics [s], a whole part of the control period; that of the robot's size if None.
 
     Raises:
-        InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated`` or a
-            ``Swimming`` that holds nothing, or an air fraction below 1 that the robot has no air for.
+        InvalidDesign: a time step that does not fit, servo noise, a control other than ``Coordinated``, ``Learned`` or
+            a ``Swimming`` that holds nothing, or an air fraction below 1 that the robot has no air for.
         OutsideLimits: a gait that the robot's joints cannot follow.
         UnknownName: a fault of a joint, or a push on a body, that does not exist.
     """
@@ -38,10 +39,10 @@ class Live:
     def __init__(self, run: Run, *, timestep: float | None = None) -> None:
         """Check the run, and start its loop and recorder."""
         swims = isinstance(run.control, Swimming) and not run.control.feels
-        if run.noise > 0.0 or not (swims or isinstance(run.control, Coordinated)):
+        if run.noise > 0.0 or not (swims or isinstance(run.control, Coordinated | Learned)):
             raise InvalidDesign(
-                "a live run takes no noise on its servos, and a control of type Coordinated, or a Swimming without "
-                "heading and depth hold."
+                "a live run takes no noise on its servos, and a control of type Coordinated or Learned, or a Swimming "
+                "without heading and depth hold."
             )
         if run.lake is not None:
             check_lake(run.robot, run.lake)
@@ -87,11 +88,12 @@ class Live:
             self._beat -= self._cycle(self.run)
         self._decide_and_read()
 
-    def walk(self, gait: Gait | None = None, control: Coordinated | Swimming | None = None) -> None:
+    def walk(self, gait: Gait | None = None, control: Coordinated | Learned | Swimming | None = None) -> None:
         """Continue in another gait or with another control, from the same phase of the cycle.
 
         Raises:
             OutsideLimits: the robot's joints cannot follow the gait, or the rules cannot coordinate it.
+            UnsuitedRobot: a policy was trained for another robot.
         """
         cycle_fraction = max(self._beat - self._start, 0) / self._cycle(self.run)
         run = self._with_whole_period(
@@ -103,6 +105,8 @@ class Live:
                 controller.take_over(self._loop.controller)
             elif self._beat > self._start:
                 controller.begin_in_motion()
+        elif isinstance(controller, LearnedController):
+            controller.take_over(self._loop.controller)
         self.run, self._loop.controller, self._loop.feels = run, controller, run.control.feels
         if self._beat >= self._start:
             self._beat = self._start + round(cycle_fraction * self._cycle(run)) % self._cycle(run)

@@ -76,20 +76,27 @@ class Loop:
         timestep: time step of the physics [s], a whole part of the control period.
         ticks: number of control periods for which controllers and noise are prepared.
         controller: what decides; None for the one that the runs name.
+        fast: whether contacts are solved in less time and with less accuracy, see ``simulate``.
 
     Raises:
         InvalidDesign: the time step does not divide the control period.
     """
 
     def __init__(
-        self, runs: Sequence[Run], timestep: float, *, ticks: int, controller: Controller | None = None
+        self,
+        runs: Sequence[Run],
+        timestep: float,
+        *,
+        ticks: int,
+        controller: Controller | None = None,
+        fast: bool = False,
     ) -> None:
         """Build the batch, start the controller, and place each robot in its first posture."""
         self.runs = runs
         self.period = control_period(runs[0].robot)
         self.steps = physics_steps(timestep, self.period)
         """Physics steps of a control period [-]."""
-        self.batch = SimulationBatch(runs, timestep)
+        self.batch = SimulationBatch(runs, timestep, fast=fast)
         self.sensors = Sensors(self.batch, runs[0].robot)
         self.feels = any(run.control.feels for run in runs)
         self.controller = start(runs, ticks, self.period) if controller is None else controller

@@ -36,6 +36,7 @@ def simulate(
     timestep: float | None = None,
     sample_stride: int = 1,
     effort: bool = True,
+    fast: bool = False,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
@@ -54,6 +55,9 @@ def simulate(
             second, in which robots settle, and the run end with a sample.
         effort: whether the record holds what the servos do (``record.EFFORT``), without which there is no work, cost
             of transport or heat. It needs the sensors in each physics step.
+        fast: whether contacts are solved in less time and with less accuracy, for training: friction cones are
+            pyramids, and the solver makes ten steps of projected Gauss-Seidel. ``bench/fast_physics.py`` states by how
+            much displacements differ.
         progress: told the share that is done.
 
     Returns:
@@ -88,7 +92,13 @@ def simulate(
         with out_of_memory():
             parts.append(
                 _simulate_group(
-                    grouped, ticks, timestep, sample_stride, portion(progress, number, len(groups)), has_effort=effort
+                    grouped,
+                    ticks,
+                    timestep,
+                    sample_stride,
+                    portion(progress, number, len(groups)),
+                    has_effort=effort,
+                    fast=fast,
                 )
             )
         order.extend(members)
@@ -179,7 +189,14 @@ def _groups(runs: Sequence[Run]) -> list[list[int]]:
 
 
 def _simulate_group(
-    runs: Sequence[Run], ticks: int, timestep: float, stride: int, progress: Progress, *, has_effort: bool
+    runs: Sequence[Run],
+    ticks: int,
+    timestep: float,
+    stride: int,
+    progress: Progress,
+    *,
+    has_effort: bool,
+    fast: bool = False,
 ) -> xr.Dataset:
     """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
 
@@ -190,8 +207,9 @@ def _simulate_group(
         stride: control periods for each sample [-].
         progress: called with the finished fraction.
         has_effort: whether the record holds what the servos do.
+        fast: whether contacts are solved in less time and with less accuracy.
     """
-    loop = Loop(runs, timestep, ticks=ticks + 1)
+    loop = Loop(runs, timestep, ticks=ticks + 1, fast=fast)
     recorder = loop.recorder(ticks // stride + 1, has_effort=has_effort)
     speeds = CommandSpeeds(runs, loop.period)
     for tick in range(ticks + 1):

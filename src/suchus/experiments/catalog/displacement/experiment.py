@@ -26,6 +26,7 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
+from suchus.robot.control import Learned, Policy
 from suchus.robot.design import layout
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
@@ -36,6 +37,8 @@ from suchus.sim.metrics import cost_of_transport, duty_factor, foot_clearance, h
 from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
+POLICY = "policy"
+"""Condition of a trained policy."""
 _CRAWL = belly_crawl.metres
 """The crawl from which strokes and bends of the map are derived."""
 _MIN_DISPLACEMENT_FRACTION = 0.00198  # [body length]; a ratio over less displacement is meaningless
@@ -58,6 +61,8 @@ class Displacement(TwoGroups):
         "forward_coordinated",
         "forward_limbs_only",
         "forward_ratio",
+        "forward_policy",
+        "gain_policy",
         "gain_spine_swing",
         "gain_tail_swing",
         "gain_tail_contact",
@@ -72,6 +77,8 @@ class Displacement(TwoGroups):
     """Bends of the axis on the map, over those of the gait [-]; of the crawl's trunk up to 1.5 rad."""
     pitches: tuple[float, ...] = (0.1, 0.15, 0.2, 0.25, 0.3)
     """Steady angles of the tail's pitch joint, down positive, over its plausible range [rad]."""
+    policy: Policy | None = None
+    """A trained policy that crawls beside the groups, at its greatest speed straight ahead; None for none."""
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
     """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
 
@@ -81,6 +88,8 @@ class Displacement(TwoGroups):
         check.rising("bends", 0.0, 20.0, "")
         check.rising("pitches", -1.0, 1.0, "rad")
         check.rising("phases", -1.0, 1.0, "cycle")
+        if self.policy is not None:
+            self.policy.check_robot(self.robot)
 
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
@@ -94,6 +103,9 @@ class Displacement(TwoGroups):
         duration = START + self.cycles * self.gait.period
         gaits = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in gaits.items()]
+        if self.policy is not None:
+            control = Learned(policy=self.policy, forward=self.policy.max_speed)
+            runs.append(Run(robot=self.robot, gait=self.policy.gait, control=control, label=POLICY))
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         built_progress = staged(progress, "robots as built", 0.1, 0.5)
         record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress))
@@ -199,6 +211,8 @@ class Displacement(TwoGroups):
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
             if control in forward:
                 measures |= estimated(name, forward["coordinated"] / forward[control], "-")
+        if POLICY in forward:
+            measures |= estimated("gain_policy", forward[POLICY] - forward["coordinated"], "m")
         measures |= ends("ratio_on_map", _ratio(record), "-")
         measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
         if record.sizes["pitch"]:

@@ -1,0 +1,8 @@
+"""Training of policies that follow commands: a table of gaits by CMA-ES, then a network that corrects it."""
+
+from suchus.experiments.train.conduct import TrainingResult, train
+from suchus.experiments.train.judging import COMMANDS, Judgement, judge
+from suchus.experiments.train.spec import TASKS, Training
+from suchus.experiments.train.tracking import Motion, motion
+
+__all__ = ["COMMANDS", "TASKS", "Judgement", "Motion", "Training", "TrainingResult", "judge", "motion", "train"]

@@ -1,0 +1,136 @@
+"""Tasks with commands: what is observed and rewarded, delay and noise, and faults that the robot is told of."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("gymnasium", reason="not installed: pip install 'suchus[gym]'")
+
+import gymnasium  # noqa: E402
+
+from suchus.apps.envs import TASKS, Breaks, Commands, CrocodileVectorEnv, GaitFollower, play, reading_columns  # noqa: E402
+from suchus.core.errors import InvalidDesign, UnknownName  # noqa: E402
+from suchus.robot.control.observation import FAILURE_READINGS, observation_layout  # noqa: E402
+from suchus.robot.design import layout  # noqa: E402
+from suchus.robot.gaits import GAITS  # noqa: E402
+from suchus.robot.robots import ROBOTS  # noqa: E402
+
+VELOCITY = TASKS["Velocity"]
+STRIDER = VELOCITY.for_robot(ROBOTS["strider"])
+
+
+def follower(task, env):
+    return GaitFollower(task=task, centre=tuple(env.pack.centre), gait=task.gait)
+
+
+def test_velocity_is_known_to_gymnasium_and_shows_what_a_robot_measures():
+    env = gymnasium.make("suchus/Velocity-v0", robot="strider")
+    seen, _ = env.reset(seed=3)
+    assert env.observation_space.contains(seen)
+    names = [sense.name for sense in observation_layout(ROBOTS["strider"], STRIDER.observed)]
+    assert {"command", "heading_error", "tracking_error", "servo_position", "angular_velocity"} <= set(names)
+    assert not {"ahead", "foot_pressure", "belly_pressure", "failure"} & set(names)
+    seen, reward, *_, info = env.step(env.action_space.sample())
+    assert reward < 0.0
+    assert info["speed_error"] >= 0.0
+
+
+def test_commands_are_drawn_anew_and_seen_in_parts_of_the_greatest():
+    task = replace(STRIDER, noise=0.0, commands=Commands(forward=(0.1, 0.4), turn=(-0.5, 0.5), interval=0.2))
+    env = CrocodileVectorEnv(2, task)
+    seen, _ = env.reset(seed=5)
+    commands = []
+    for _ in range(9):
+        shown = reading_columns(seen, "command", task.robot, task.observed)
+        assert shown * (0.4, 0.5) == pytest.approx(env.pack.command, abs=1e-6)
+        commands.append(env.pack.command[0].tolist())
+        seen, *_ = env.step(np.zeros(env.action_space.shape))
+    assert commands[0] == commands[3]
+    assert commands[3] != commands[4]
+    assert all(0.1 <= speed <= 0.4 and abs(turn) <= 0.5 for speed, turn in commands)
+
+
+def test_who_walks_as_commanded_is_paid_more_than_who_stands():
+    task = replace(STRIDER, noise=0.0, delay=0.0, commands=Commands(forward=(0.19, 0.2), turn=(-0.01, 0.01)))
+    env = CrocodileVectorEnv(2, task)
+    walked = play(task, follower(task, env), episodes=2, steps=100)
+    stood = play(task, lambda seen: np.zeros((len(seen), len(layout(task.robot).servos))), episodes=2, steps=100)
+    assert walked.returns.mean() > stood.returns.mean() + 2.0
+    assert stood.returns.mean() == pytest.approx(-10.0 * 0.195 * 5.0, rel=0.1)
+
+
+def test_a_delay_is_the_same_motion_later():
+    task = replace(STRIDER, noise=0.0, delay=0.0, jitter=0.0)
+    late = replace(task, delay=0.02)
+    actions = np.random.default_rng(0).uniform(-0.3, 0.3, (6, 1, len(layout(task.robot).servos)))
+    targets = {}
+    for chosen in (task, late):
+        env, rows = CrocodileVectorEnv(1, chosen), []
+        env.reset(seed=1)
+        advance = env.pack.loop.advance
+
+        def noted(env=env, rows=rows, advance=advance, **settings):
+            rows.append(env.pack.loop.command.targets[0].copy())
+            advance(**settings)
+
+        env.pack.loop.advance = noted
+        for action in actions:
+            env.step(action)
+        targets[chosen.delay] = np.array(rows)
+    assert np.array_equal(targets[0.02][2:], targets[0.0][:-2])
+    assert not np.array_equal(targets[0.02], targets[0.0])
+
+
+def test_noise_depends_on_the_seed_alone():
+    task = replace(STRIDER, noise=0.05)
+    three, one = CrocodileVectorEnv(3, task), CrocodileVectorEnv(1, task)
+    seen, _ = three.reset(seed=7)
+    alone, _ = one.reset(seed=8)
+    assert seen[1].tobytes() == alone[0].tobytes()
+    silent, _ = CrocodileVectorEnv(1, replace(task, noise=0.0)).reset(seed=8)
+    assert 0.02 < np.std(alone - silent) < 0.08
+
+
+def test_the_heading_error_grows_where_a_turn_is_commanded_and_not_made():
+    task = replace(STRIDER, noise=0.0, commands=Commands(forward=(0.1, 0.2), turn=(0.29, 0.3)))
+    env = CrocodileVectorEnv(1, task)
+    env.reset(seed=0)
+    for _ in range(20):
+        seen, *_ = env.step(np.zeros(env.action_space.shape))
+    error = reading_columns(seen, "heading_error", task.robot, task.observed)[0, 0]
+    assert error == pytest.approx(0.295 * 20 * task.decision, abs=0.05)
+
+
+def test_a_robot_is_told_of_its_fault_from_its_time_on():
+    breaks = Breaks(joints=("LF_yaw",), earliest=0.2, latest=0.2)
+    task = replace(TASKS["Fault"], breaks=breaks, told=True)
+    env = CrocodileVectorEnv(1, task)
+    seen, _ = env.reset(seed=0)
+    shown = []
+    for _ in range(6):
+        shown.append(reading_columns(seen, "failure", task.robot, task.observed)[0])
+        seen, *_ = env.step(np.zeros(env.action_space.shape))
+    servo = layout(task.robot).servos.index("LF_yaw")
+    assert [row[servo] for row in shown] == [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
+    assert sum(row.sum() for row in shown) == 2.0
+
+
+def test_the_tasks_in_water_take_commands_too():
+    env = gymnasium.make("suchus/Swim-v0", commands=Commands(forward=(0.05, 0.1)))
+    seen, _ = env.reset(seed=0)
+    assert seen.shape == (108,)
+    env.step(env.action_space.sample())
+
+
+def test_what_cannot_be_is_refused():
+    with pytest.raises(InvalidDesign, match="readings has command, heading_error, which need"):
+        replace(TASKS["Crawl"], readings=("clock", "command", "heading_error"))
+    with pytest.raises(UnknownName, match="colour"):
+        replace(TASKS["Crawl"], readings=("clock", "colour"))
+    with pytest.raises(InvalidDesign, match="delay is 0.013 s; whole control periods"):
+        replace(TASKS["Crawl"], delay=0.013)
+    with pytest.raises(InvalidDesign, match="commands.forward"):
+        Commands(forward=(0.2, 0.1))
+    assert "failure" in FAILURE_READINGS
+    assert GAITS["low_crawl"] == VELOCITY.gait
