@@ -435,7 +435,7 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> 
     cycles_taken = cycles_until(error, period, start=START, hold=hold)
     has_started = np.isfinite(record.start_phase.isel(start_time=0)).all("leg")
     measures = Measures()
-    for law in record.law.values:
+    for law in record.law.values[has_started.any("start").values]:
         convergence_cycles = cycles_taken.sel(law=law).values[has_started.sel(law=law).values]
         measures |= estimated_fraction(f"converged_{law}", np.isfinite(convergence_cycles))
         measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error.sel(law=law), hold * period).mean()), "-")
