@@ -95,6 +95,7 @@ class JointFaults(TwoGroups):
     )
     needs = ("limbs",)
     judged_settings = ("robot", "gait", "control_group", "lifted", "cycles", "hold", "kind", "legs", "tolerances")
+    judged_minima: ClassVar[Mapping[str, float]] = {"repeats": 6}
 
     lifted: float = LIFTED
     """Pitch of the tail of the control group with its tail in the air, for comparison, down positive [rad]."""
@@ -115,6 +116,8 @@ class JointFaults(TwoGroups):
     """
     legs: Legs = "one"
     """Whether the judged fault is in one leg or in both legs of a girdle; one, because the text names single joints."""
+    repeats: int = 6
+    """Number of robots built of the design, for each arm and fault [-]: the fewest that give a median an interval."""
     timestep: float = 0.005
     """Time step of the physics [s]. A step of 2 ms changes no median by more than 3 percentage points. A step of 10 ms
     changes some by 6, and the effect of steering on a failed hind yaw joint."""
