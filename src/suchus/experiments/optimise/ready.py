@@ -129,7 +129,7 @@ def _crawl_of(robot: Robot) -> Optimisation:
 
 
 def fault(robot: Robot | None = None) -> Optimisation:
-    """The farthest two cycles with each joint of a leg limp, a gait for each: what a robot gains that knows its fault."""
+    """The farthest two cycles with each joint of a leg limp, a gait for each: what knowing a fault is worth."""
     base = crawl(robot)
     run = base.run
     joints = [joint for joint in FAILED_JOINTS if joint in failing_joints(run.robot)] or list(failing_joints(run.robot))
@@ -148,8 +148,8 @@ def fault(robot: Robot | None = None) -> Optimisation:
         limits=tuple(limit for limit in base.limits if limit.name in ("torque", "clearance")),
         evaluations=240,
         reasons=(
-            "Each condition begins with the gait of the intact robot: the first number is what a robot loses that is not "
-            "told of its fault, the best what one keeps that is.",
+            "Each condition begins with the gait of the intact robot: the first number is that of a robot that does "
+            "not know its fault, the best that of one that does.",
             "A limp joint turns the robot, and a foot that is not lifted slips, so that neither is a limit here.",
             *base.reasons,
         ),
