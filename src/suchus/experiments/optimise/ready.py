@@ -132,7 +132,8 @@ def fault(robot: Robot | None = None) -> Optimisation:
     """The farthest two cycles with each joint of a leg limp, a gait for each: what knowing a fault is worth."""
     base = crawl(robot)
     run = base.run
-    joints = [joint for joint in FAILED_JOINTS if joint in failing_joints(run.robot)] or list(failing_joints(run.robot))
+    possible_joints = failing_joints(run.robot)
+    joints = [joint for joint in possible_joints if joint in FAILED_JOINTS] or possible_joints
     arms = tuple(
         Arm(
             name=f"{joint}_{arm.name}",
