@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 from suchus.core.errors import InvalidDesign, UnknownName, UnsuitedRobot
 from suchus.hardware import cases, loads_of_cases, share_at_limit, size, with_better, with_motors
 from suchus.hardware.loads import FULL_WOUND, measure_loads, torque_use
-from suchus.hardware.sizing import FACTORS, does, families_of, places, use
+from suchus.hardware.parts import sheet
+from suchus.hardware.sizing import FACTORS, does, families_of, link_loads, places, use
 from suchus.robot.design import Servo, layout, servo_names, with_servos
 from suchus.robot.design.motor import COPPER
 from suchus.robot.gaits import GAITS
@@ -180,6 +181,32 @@ def test_a_slow_family_does_with_a_longer_period_and_a_hot_or_weak_one_does_not(
     assert poor.loads == {}
     names = [family.name for family in found.families]
     assert names.index("mine") < names.index("slow") < min(names.index("hot"), names.index("poor"))
+
+
+def test_a_servo_heavier_than_its_link_is_refused_and_so_are_servos_that_outweigh_it_together(robot, quick):
+    heavy = replace(GOOD, name="heavy", family="heavy", mass=0.16)  # the femur is simulated with 0.15 kg
+    many = replace(GOOD, name="many", family="many", mass=0.11)  # seven of them sit on a pelvis of 0.75 kg
+    light = replace(heavy, name="light", family="heavy and light", mass=0.05, price=(90.0, 90.0))
+    mixed = replace(heavy, name="mixed", family="heavy and light")
+    found = by_name(sized(robot, quick, heavy, many, light, mixed))
+    assert "heavy of LF_knee weighs 160 g, and LF_femur, on which it sits, 150 g" in found["heavy"].lacking
+    assert found["heavy"].loads == {}
+    assert "its servos on pelvis weigh 770 g, and pelvis with all that is on it 750 g" in found["many"].lacking
+    chosen = found["heavy and light"].chosen
+    assert chosen["LF_knee"].name == "light"
+    assert chosen["spine_yaw_1"].name == "mixed"  # cheaper, and spine and pelvis bear it
+
+
+def test_loads_of_links_are_those_of_the_building_sheet(bought):
+    budgets = {budget.name: budget for budget in sheet(bought).bodies}
+    loads = link_loads(bought, dict.fromkeys(layout(bought).servos, STS))
+    assert sum(load.servos for load in loads) == pytest.approx(19 * STS.mass)
+    for load in loads:
+        assert load.servos == pytest.approx(budgets[load.body].servos)
+        assert load.mass == pytest.approx(budgets[load.body].simulated)
+    fills = [load.servos / load.mass for load in loads]
+    assert fills == sorted(fills, reverse=True)
+    assert loads[0].body == "pelvis"
 
 
 def test_a_family_whose_servos_do_not_bear_one_supply_is_refused(robot, quick):

@@ -50,7 +50,7 @@ def test_the_command_searches_a_file_and_refuses_the_option_elsewhere(tmp_path, 
     assert main(["optimise", "crawl", "--robot", "half.toml", "--evaluations", "4"]) == 0
     assert "limbs_only: displacement" in capsys.readouterr().out
     assert main(["optimise", "turn", "--robot", "half.toml"]) == 2
-    assert "--robot is for the search crawl; turn is of the robot that it names" in capsys.readouterr().err
+    assert "--robot is for the search crawl or fault; turn is of the robot that it names" in capsys.readouterr().err
 
 
 def test_displacement_names_the_search_in_its_second_sentence():

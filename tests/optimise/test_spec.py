@@ -2,15 +2,21 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from suchus.apps.cli import main
 from suchus.core.errors import SuchusError
 from suchus.experiments.optimise import AIMS, LIMITS, READY, Aim, Limit
+from suchus.experiments.optimise.evaluate import evaluate
 from suchus.experiments.study import Arm, Vary
 from suchus.robot.control import Runs
 from suchus.robot.design import value_at
 from suchus.robot.design.scale import control_period
+from suchus.robot.gaits import GAITS
+from suchus.robot.robots import ROBOTS
+from suchus.sim.land import FAILED_JOINTS, Limp, Run, failing_joints, simulate
+from suchus.sim.metrics import displacement
 
 STROKE = Vary(field="gait.stroke", low=0.0, high=0.75)
 BAD = [
@@ -133,3 +139,36 @@ def test_what_a_ready_made_search_begins_with_can_be_steered(name):
     for arm in spec.arms:
         run = spec.for_arm(arm).run
         run.control.start(Runs.identical(run.control, run.robot, run.gait), control_period(run.robot))
+
+
+def test_the_search_of_a_fault_has_a_condition_for_each_joint_that_the_article_breaks():
+    spec = READY["fault"]()
+    assert [arm.name for arm in spec.arms] == [
+        f"{joint}_{group}"
+        for joint in failing_joints(ROBOTS["caiman"])
+        if joint in FAILED_JOINTS
+        for group in ("coordinated", "limbs_only")
+    ]
+    for arm in spec.arms:
+        run = spec.for_arm(arm).run
+        (fault,) = run.faults
+        assert isinstance(fault, Limp)
+        assert fault.part == {"front": "LF_", "hind": "LH_"}[arm.name.partition("_")[0]] + arm.name.split("_")[1]
+        group = next(each for each in READY["crawl"]().arms if arm.name.endswith(each.name))
+        assert run.gait == READY["crawl"]().for_arm(group).run.gait
+    other = READY["fault"](ROBOTS["strider"])
+    assert other.name == "fault_strider"
+    assert all(other.for_arm(arm).run.faults for arm in other.arms)
+
+
+def test_the_first_candidate_of_a_fault_is_the_robot_that_is_not_told():
+    spec = replace(READY["fault"](), duration=3.0)
+    arm = next(arm for arm in spec.arms if arm.name == "front_pitch_coordinated")
+    alone = spec.for_arm(arm)
+    start = evaluate(alone, np.array([alone.start]))
+    run = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"], faults=(Limp("LF_pitch"),))
+    record = simulate([run], duration=3.0, timestep=spec.timestep, sample_stride=2)
+    told = float(displacement(record).sel(xyz="x").item())
+    assert float(start["aim_displacement"][0]) == pytest.approx(told, rel=1e-3, abs=1e-4)
+    intact = simulate([replace(run, faults=())], duration=3.0, timestep=spec.timestep, sample_stride=2)
+    assert abs(told) < 0.5 * float(displacement(intact).sel(xyz="x").item())

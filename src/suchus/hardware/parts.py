@@ -224,7 +224,7 @@ def sheet(
         for name, servo in servos_of(robot).items()
         if name not in linear_cables and servo.winding is not None and servo.winding.motor in sold
     }
-    seats = _seats(robot)
+    seats = servo_seats(robot)
     parts = (*_shapes(robot), *_foam(robot), *_servos(robot, motor_by_servo, seats))
     bodies = _bodies(robot, motor_by_servo, seats, parts, wall * density)
     zero_angles = np.zeros(len(layout(robot).hinges))
@@ -320,7 +320,7 @@ def _foam(robot: Robot) -> list[BodyPart]:
     return foam_parts
 
 
-def _seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
+def servo_seats(robot: Robot) -> dict[str, tuple[str, tuple[float, float, float]]]:
     """Return the body on which each servo sits and its position: the body before its hinge, from the root."""
     place = layout(robot)
     seats = {}

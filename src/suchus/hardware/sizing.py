@@ -22,8 +22,10 @@ from suchus.hardware.loads import (
     torque_use,
     with_strong_servos,
 )
+from suchus.hardware.parts import servo_seats
 from suchus.robot.design import Motor, Robot, Servo, layout, with_named_servos
 from suchus.robot.design.scale import coarse_step
+from suchus.robot.kinematics.tree import body_masses
 from suchus.robot.motors import motors as shipped
 
 FACTORS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0)
@@ -168,6 +170,42 @@ def places(robot: Robot) -> list[tuple[str, ...]]:
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinkLoad:
+    """Mass of the servos that sit on one body, beside the mass that the body has in the simulation."""
+
+    body: str
+    """Name of the body."""
+    servos: float
+    """Mass of its servos [kg]."""
+    mass: float
+    """Mass of the body with all that is on it, as simulated [kg]."""
+
+
+def link_masses(robot: Robot) -> Mapping[str, float]:
+    """Return the simulated mass of the body on which each servo sits, by the servo's name [kg]."""
+    masses = dict(zip([body.name for body in layout(robot).bodies], body_masses(robot)[0].tolist(), strict=True))
+    return {name: masses[body] for name, (body, _) in servo_seats(robot).items()}
+
+
+def link_loads(robot: Robot, motors: Mapping[str, Motor]) -> list[LinkLoad]:
+    """Return the mass of servos on each body that carries some, the fullest body first.
+
+    Args:
+        robot: the robot; the masses of its bodies hold everything that is on them.
+        motors: the servos that are bought, by the names of the robot's.
+    """
+    masses = link_masses(robot)
+    sums: dict[str, float] = {}
+    mass_by_body: dict[str, float] = {}
+    for name, (body, _) in servo_seats(robot).items():
+        if name in motors:
+            sums[body] = sums.get(body, 0.0) + motors[name].mass
+            mass_by_body[body] = masses[name]
+    loads = [LinkLoad(body=body, servos=servos, mass=mass_by_body[body]) for body, servos in sums.items()]
+    return sorted(loads, key=lambda load: -load.servos / load.mass)
+
+
 def with_motors(robot: Robot, motors: Mapping[str, Motor], volts: float) -> Robot:
     """Return a robot with servos that are sold, with the gains and gears of its own servos."""
     servos = {name: Servo.from_motor(motor, volts, template=robot.servo(name)) for name, motor in motors.items()}
@@ -185,9 +223,10 @@ def size(
     """Find sufficient servos for a robot, in each family of those that are sold.
 
     The demand of a movement is measured with servos four times as strong. Of each family the cheapest servos are chosen
-    that supply this torque at its speed and bear its heat. Then the robot is simulated with them. A servo that is at
-    its limit for more than 2 % of the time, or too warm in the long run, is replaced by the next one, until all are
-    sufficient. A gait that is too fast for a family is tried with a longer period.
+    that supply this torque at its speed and bear its heat; one that is heavier than the body on which it sits is none
+    of them. Then the robot is simulated with them. A servo that is at its limit for more than 2 % of the time, or too
+    warm in the long run, is replaced by the next one, until all are sufficient. A gait that is too fast for a family is
+    tried with a longer period. A family whose servos together outweigh a body that carries them does not do.
 
     Args:
         robot: the robot.
@@ -229,6 +268,7 @@ class _Search:
 
     def __init__(self, robot: Robot, load_cases: Sequence[LoadCase]) -> None:
         self._robot, self._load_cases, self._places = robot, tuple(load_cases), places(robot)
+        self._link_masses = link_masses(robot)
         self._gaits = list(dict.fromkeys(case.gait.name for case in load_cases))
         self._demands: dict[tuple[str, float], xr.Dataset] = {}
 
@@ -246,13 +286,31 @@ class _Search:
             else:
                 best_family, weak = self._simulated(name, volts, motors, factors)
                 if weak is None:
-                    return best_family
+                    return self._weighed(best_family)
                 shortfall = weak
             gait, lacking_here = shortfall
             longer_factors = [factor for factor in FACTORS if factor > factors[gait]]
             if not longer_factors or not self._can_wait(gait):
                 return replace(best_family, lacking=lacking_here, factors=dict(factors))
             factors[gait] = longer_factors[0]
+
+    def _weighed(self, family: ServoFamily) -> ServoFamily:
+        """Return a family that does not do where its servos outweigh a body that carries them."""
+        fullest = link_loads(self._robot, family.chosen)[:1]
+        if not fullest or fullest[0].servos <= fullest[0].mass:
+            return family
+        (load,) = fullest
+        return replace(
+            family,
+            lacking=(
+                f"its servos on {load.body} weigh {1e3 * load.servos:.0f} g, and {load.body} with all that is on it "
+                f"{1e3 * load.mass:.0f} g: make {load.body} heavier, or take lighter servos"
+            ),
+        )
+
+    def is_light(self, motor: Motor, names: Sequence[str]) -> bool:
+        """Return whether a servo is no heavier than the body on which it sits, at some places."""
+        return all(motor.mass <= self._link_masses[name] for name in names)
 
     def _can_wait(self, gait: str) -> bool:
         """Return whether a gait may have a longer period: all but swims, whose wave depends on the period."""
@@ -273,7 +331,9 @@ class _Search:
         return [self._demands[key] for key in keys]
 
     def bears(self, motor: Motor, names: Sequence[str], demands: Sequence[xr.Dataset]) -> bool:
-        """Return whether a servo supplies the torque at standstill, and bears the heat, at some places."""
+        """Return whether a servo supplies the torque at standstill, bears the heat and is light enough, at places."""
+        if not self.is_light(motor, names):
+            return False
         for demand in demands:
             torque = demand.servo_peak_torque.sel(servo=list(names)).values
             if np.quantile(torque, 1.0 - AT_LIMIT, axis=0).max() > motor.stall_torque:
@@ -300,8 +360,20 @@ class _Search:
         for case, demand in zip(self._slower_cases(factors), self.demands(factors), strict=True):
             for names in self._places:
                 if not any(self.bears(motor, names, [demand]) for motor in motors):
+                    lightest = min(motors, key=lambda motor: motor.mass)
+                    if not self.is_light(lightest, names):
+                        return case.gait.name, self._too_heavy(lightest, names)
                     return case.gait.name, self._lacks(names, case, demand)
         return None
+
+    def _too_heavy(self, motor: Motor, names: Sequence[str]) -> str:
+        """Return a sentence: the lightest servo of a family is heavier than the body on which it would sit."""
+        name = min(names, key=lambda servo: self._link_masses[servo])
+        body, _ = servo_seats(self._robot)[name]
+        return (
+            f"{motor.name} of {name} weighs {1e3 * motor.mass:.0f} g, and {body}, on which it sits, "
+            f"{1e3 * self._link_masses[name]:.0f} g with all that is on it: make {body} heavier, or take lighter servos"
+        )
 
     def _lacks(self, names: Sequence[str], case: LoadCase, demand: xr.Dataset) -> str:
         """Return a sentence: no servo of a family is strong enough for some servos in a case."""
@@ -317,7 +389,8 @@ class _Search:
         """Return the servos to try at some places, the cheapest first: those that fit, else those that bear it."""
         fitting = [motor for motor in motors if self.fits(motor, volts, names, demands)]
         bearing = [motor for motor in motors if self.bears(motor, names, demands)]
-        return fitting or bearing or [max(motors, key=lambda motor: motor.continuous_torque)]
+        light = [motor for motor in motors if self.is_light(motor, names)] or list(motors)
+        return fitting or bearing or [max(light, key=lambda motor: motor.continuous_torque)]
 
     def _simulated(
         self, name: str, volts: float, motors: Sequence[Motor], factors: Mapping[str, float]

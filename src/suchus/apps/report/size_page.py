@@ -10,7 +10,7 @@ from typing import Any
 from suchus.apps.report.rendering import embedded, number, render
 from suchus.core.files import write
 from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
-from suchus.hardware.sizing import ServoFamily, Sizing, binding_limit, use, with_motors
+from suchus.hardware.sizing import ServoFamily, Sizing, binding_limit, link_loads, use, with_motors
 from suchus.robot import blueprint
 from suchus.robot.design import Motor, layout
 from suchus.visual import figures
@@ -158,6 +158,7 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
         f"{best.chosen[name].name} has, by {binding_limit(best.chosen[name], best.loads[case][name])}.",
         f"A battery for {hours:g} h needs at most {best.battery(hours):.1f} Ah at {best.volts:g} V, by the hungriest "
         f"movement.",
+        _mass_sentence(sizing, best),
     ]
     actuator_names = [cable.name for cable in sizing.robot.cables if cable.linear is not None]
     if actuator_names:
@@ -177,6 +178,16 @@ def answer(sizing: Sizing, hours: float = 1.0) -> list[str]:
             f"No source confirms what suchus has for their {' and '.join(remembered)}: look before you buy."
         )
     return sentences + _overheating(sizing)
+
+
+def _mass_sentence(sizing: Sizing, family: ServoFamily) -> str:
+    """Return in a sentence what the servos weigh, and which body they fill the most."""
+    fullest = link_loads(sizing.robot, family.chosen)[0]
+    return (
+        f"Its servos are {100 * family.mass / sizing.robot.mass:.0f} % of the robot's {sizing.robot.mass:.3g} kg; "
+        f"{fullest.body} carries {1000 * fullest.servos:.0f} g of them and weighs {1000 * fullest.mass:.0f} g with all "
+        "that is on it."
+    )
 
 
 def _overheating(sizing: Sizing) -> list[str]:

@@ -14,7 +14,7 @@ from suchus.robot.gaits import GAITS, conditions_of, control_group, default_gait
 from suchus.robot.gaits.belly_crawl import FRONT, HIND
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Run
+from suchus.sim.land import FAILED_JOINTS, Run, failing_joints, joint_failure
 
 _LEGS = (
     ("duty_factor", 0.5, 0.8),
@@ -124,6 +124,35 @@ def _crawl_of(robot: Robot) -> Optimisation:
             "moved where they would not hold the gait's own value.",
             "Both conditions have the same legs, ranges, limits, population and budget; limbs_only holds the axis "
             "straight.",
+        ),
+    )
+
+
+def fault(robot: Robot | None = None) -> Optimisation:
+    """The farthest two cycles with each joint of a leg limp, a gait for each: what knowing a fault is worth."""
+    base = crawl(robot)
+    run = base.run
+    possible_joints = failing_joints(run.robot)
+    joints = [joint for joint in possible_joints if joint in FAILED_JOINTS] or possible_joints
+    arms = tuple(
+        Arm(
+            name=f"{joint}_{arm.name}",
+            values={**arm.values, "faults": joint_failure(run.robot, run.gait, joint, "limp")},
+        )
+        for joint in joints
+        for arm in base.arms
+    )
+    return replace(
+        base,
+        name=base.name.replace("crawl", "fault", 1),
+        arms=arms,
+        limits=tuple(limit for limit in base.limits if limit.name in ("torque", "clearance")),
+        evaluations=240,
+        reasons=(
+            "Each condition begins with the gait of the intact robot: the first number is that of a robot that does "
+            "not know its fault, the best that of one that does.",
+            "A limp joint turns the robot, and a foot that is not lifted slips, so that neither is a limit here.",
+            *base.reasons,
         ),
     )
 
@@ -239,9 +268,9 @@ def lifted() -> Optimisation:
     )
 
 
-FOR_ANY_ROBOT = ("crawl",)
+FOR_ANY_ROBOT = ("crawl", "fault")
 """Those that take another robot than the article's."""
 READY: Mapping[str, Callable[..., Optimisation]] = MappingProxyType(
-    {maker.__name__: maker for maker in (crawl, thrift, turn, stand, lifted)}
+    {maker.__name__: maker for maker in (crawl, fault, thrift, turn, stand, lifted)}
 )
 """What makes each; its docstring says what it is."""
