@@ -51,6 +51,10 @@ const tasks = {
       return { volume, passive: data.qfrc_passive, mass: data.M };
     });
   },
+  async sentence() {
+    const { verdictSentence } = await load("page");
+    return given.cases.map((words) => verdictSentence(...words));
+  },
   async walk() {
     const build = await walks();
     return given.cases.map(({ facts, settings, ticks, faults = [], push = null }) => {

@@ -94,7 +94,7 @@ def test_it_rests_where_motion_is_not_wanted_and_asks_for_nothing(phone, address
 def test_after_two_cycles_it_says_what_python_says(phone):
     phone.evaluate("laboratory.page.begin()")
     go_on(phone, START + 2 * GAIT.period + 0.1)
-    assert "After 2 cycles your gait is" in text(phone, "verdict-text")
+    assert "After 2 cycles the robot in your gait is" in text(phone, "verdict-text")
     for i, gait in enumerate((GAIT, control_group(GAIT))):
         record = suchus.crawl(ROBOT, gait, cycles=2)
         assert text(phone, f"forward-{i}") == f"{float(displacement(record)[0]):.2f} m".replace("-", "−")

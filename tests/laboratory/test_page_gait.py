@@ -93,3 +93,21 @@ def test_a_name_with_marks_of_its_own_stays_a_name(tmp_path):
     file = tmp_path / "odd.toml"
     file.write_text(run("toml", gaits=[gait_facts(gait)])[0])
     assert blueprint.read_gait(file, ROBOTS["caiman"], GAITS) == gait
+
+
+def test_the_sentence_follows_the_run_whichever_way_it_comes_out():
+    cases = {
+        (0.74, 0.17): "is 0.74 m ahead of its start; the one with its axis still is 0.17 m ahead of its start. "
+        "Bending takes it 4.4 times as far.",
+        (0.17, 0.34): "Bending takes it 0.50 times as far: here it costs way.",
+        (0.25, 0.245): "Bending makes no difference of more than 5 %.",
+        (0.30, 0.01): "the one with its axis still has hardly moved. Here the way comes from bending.",
+        (0.30, -0.20): "is 0.20 m behind its start. Here the way comes from bending.",
+        (-0.30, 0.20): "Here bending the axis costs the way.",
+        (0.005, -0.01): "neither robot has moved by more than 1 % of its length",
+    }
+    said = run("sentence", cases=[[2, list(forward), 1.0, True] for forward in cases])
+    for text, expected in zip(said, cases.values(), strict=True):
+        assert text.startswith("After 2 cycles ")
+        assert expected in text
+    assert "both robots move alike" in run("sentence", cases=[[1, [0.3, 0.3], 1.0, False]])[0]

@@ -93,7 +93,7 @@ def _restarts(ranges: Sequence[tuple[float, float]]) -> list[list[float]]:
     """Return the angles at which ``kinematics.limb.inverse`` begins anew for a point that is stuck [rad]."""
     bounds = np.array([[low, high] if np.isfinite(low) else [-np.pi, np.pi] for low, high in ranges])
     rng = np.random.default_rng(0)
-    return [rng.uniform(*bounds.T, (1, len(ranges)))[0].tolist() for _ in range(limb_kinematics.SEEDS)]
+    return [rng.uniform(bounds[:, 0], bounds[:, 1], (1, len(ranges)))[0].tolist() for _ in range(limb_kinematics.SEEDS)]
 
 
 def _finite(row: Sequence[float] | np.ndarray) -> list[float | None]:

@@ -76,7 +76,7 @@ def laboratory_page(robot: Robot, gait: Gait, *, level: float | None = None, eng
         ghost=first.isel(run=1),
         labels=LABELS,
         title=f"{robot.name}: the laboratory in one page",
-        caption="Two robots with the same legs: one moves as you say; the other, pale, keeps its axis still.",
+        caption="Two robots from the same start: one moves as you say; the other, pale, keeps its axis still.",
         facts=embed_json(_page_facts(robot, gait, level, swims=swims)),
         engine_script=Markup(_inline_script(engine.script)),
         engine_binary=Markup(b64encode(engine.binary).decode("ascii")),

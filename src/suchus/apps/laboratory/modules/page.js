@@ -8,7 +8,8 @@ const MIN_BUDGET = 24, MAX_BUDGET = 150, BUDGET_SHARE = 0.5; // [ms] of simulati
 const MAX_TAP_MOVE = 8, MAX_TAP_TIME = 500, TAP_REACH = 44; // [px], [ms], [px]
 const MIN_ADVANCE = 0.01; // in each cycle [body length]; less is no walk
 const EQUAL_RATIO = 0.05; // ratios nearer to 1 are called equal
-const RESTING = "-";
+const MIN_ASIDE = 0.62; // distance of the robots to the side [size: length, or reach to both sides]
+const RESTING = "–";
 const WEAK_FRACTION = 0.3;
 
 const element = (id) => document.getElementById(id);
@@ -31,19 +32,32 @@ function refuse(text) {
   element("verdict-text").classList.add("refused");
 }
 
-/** Return a sentence on what two robots have done after some cycles. */
+/** Return a length with its unit; a length that is shown as zero has no sign. */
+function metresText(value, places) {
+  const text = value.toFixed(places);
+  return minus(`${Number(text) === 0 ? text.replace("-", "") : text} m`);
+}
+
+/**
+ * Return sentences on what two robots have done after some cycles.
+ * @param {number} cycles number of cycles.
+ * @param {number[]} forward displacement of the robot in the user's gait and of the one with its axis still [m].
+ * @param {number} length length of the robot [m].
+ * @param {boolean} bends whether the user's gait bends the axis.
+ */
 export function verdictSentence(cycles, [mine, still], length, bends) {
   const least = MIN_ADVANCE * length * cycles, places = length < 0.5 ? 3 : 2;
-  const after = `After ${cycles} cycle${cycles > 1 ? "s" : ""}`, metre = (value) => minus(`${Math.abs(value).toFixed(places)} m`);
-  const way = (value) => Math.abs(value) < least ? "has hardly moved" : `is ${metre(value)} ${value > 0 ? "ahead of" : "behind"} its start`;
-  if (!bends) return `${after} your gait, which does not bend its axis, ${way(mine)}: both robots move alike.`;
+  const after = `After ${cycles} cycle${cycles > 1 ? "s" : ""}`;
+  const way = (value) => Math.abs(value) < least ? "has hardly moved" : `is ${metresText(Math.abs(value), places)} ${value > 0 ? "ahead of" : "behind"} its start`;
+  if (!bends) return `${after} the robot in your gait ${way(mine)}. Your gait does not bend the axis, so that both robots move alike.`;
   if (Math.abs(mine) < least && Math.abs(still) < least) return `${after} neither robot has moved by more than 1 % of its length in each cycle.`;
-  const start = `${after} your gait ${way(mine)}; the same legs with the axis still: ${way(still)}`;
-  if (mine < least) return `${start}. Here bending the axis costs the way.`;
-  if (still < least) return `${start}. Here it is the bending that makes the way.`;
+  const both = `${after} the robot in your gait ${way(mine)}; the one with its axis still ${way(still)}.`;
+  if (mine < least) return `${both} Here bending the axis costs the way.`;
+  if (still < least) return `${both} Here the way comes from bending.`;
   const ratio = mine / still;
-  if (Math.abs(ratio - 1) < EQUAL_RATIO) return `${start}. Bending the axis makes no difference of more than 5 %.`;
-  return `${start}: with bending ${ratio.toFixed(ratio < 10 ? 1 : 0)} times as far${ratio < 1 ? ", so that it costs way here" : ""}.`;
+  if (Math.abs(ratio - 1) < EQUAL_RATIO) return `${both} Bending makes no difference of more than 5 %.`;
+  const factor = ratio.toFixed(ratio < 10 ? (ratio < 2 ? 2 : 1) : 0);
+  return `${both} Bending takes it ${factor} times as far${ratio < 1 ? ": here it costs way" : ""}.`;
 }
 
 /** Return the measures of a run from the start of the first cycle on. */
@@ -63,6 +77,7 @@ class Laboratory {
     this.gait = facts.gait;
     this.settings = { ...facts.settings };
     this.broken = new Map();
+    player.meta.aside = Math.max(player.meta.aside, MIN_ASIDE * player.meta.size);
     this.stride = Math.max(1, Math.round(1 / (player.meta.rate * facts.physics.period)));
     this.pace = 1;
     this.changed = false;
@@ -156,7 +171,7 @@ class Laboratory {
         : "The verdict comes with the end of the first cycle.";
     element("verdict-table").hidden = !cycles || this.changed;
     if (!cycles) return;
-    const least = MIN_ADVANCE * this.robot.length * cycles, metre = (value) => minus(`${value.toFixed(places)} m`);
+    const least = MIN_ADVANCE * this.robot.length * cycles, metre = (value) => metresText(value, places);
     const rows = { forward: (v) => metre(v.forward), sideways: (v) => metre(v.sideways), height: (v) => `${(1000 * v.height).toFixed(places === 2 ? 0 : 1)} mm`,
       cost: (v) => Math.hypot(v.forward, v.sideways) < least ? RESTING : v.cost.toPrecision(2),
       duty: (v) => this.robot.limbs.map((limb, i) => `${limb.name} ${v.duty[i].toFixed(2)}`).join(" ") || RESTING };

@@ -357,6 +357,7 @@
     const now = seenActors.map((actor) => frame(actor, state.time));
     if (state.follow) {
       const sum = now.reduce((at, one) => add(at, one.mass, 1 / now.length), [0, 0, 0]);
+      if (live) sum[0] = now[0].mass[0]; // the other robot may stay far behind
       camera.target = [sum[0], sum[1], levels ? sum[2] : Math.max(0.06 * meta.length, 0.8 * sum[2])];
     }
     const seen = view();
