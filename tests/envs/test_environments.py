@@ -186,11 +186,22 @@ def test_the_reward_is_the_weighted_sum_of_what_happened():
         approach=np.array([0.125]),
         goal=np.array([True]),
         fall=np.array([True]),
+        speed_error=np.array([0.5]),
+        turn_error=np.array([0.25]),
     )
     weights = envs.Rewards(
-        forward=1.0, lateral_drift=2.0, upright=20.0, work=-0.5, action_rate=-1.0, fall=-8.0, approach=8.0, goal=16.0
+        speed_error=-4.0,
+        turn_error=-8.0,
+        forward=1.0,
+        lateral_drift=2.0,
+        upright=20.0,
+        work=-0.5,
+        action_rate=-1.0,
+        fall=-8.0,
+        approach=8.0,
+        goal=16.0,
     )
-    assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0 + 1.0 + 16.0]
+    assert terms.reward(weights).tolist() == [0.5 + 0.5 + 1.0 - 1.0 - 4.0 - 8.0 + 1.0 + 16.0 - 2.0 - 2.0]
 
 
 def test_the_terms_add_up_over_an_episode():

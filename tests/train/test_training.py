@@ -102,7 +102,7 @@ def test_what_cannot_be_trained_is_refused():
         Training(task="velocty")
     with pytest.raises(UnsuitedRobot, match="has none: train swim"):
         Training(robot=ROBOTS["swimmer"])
-    with pytest.raises(InvalidDesign, match="floats|heavier|sinks"):
+    with pytest.raises(InvalidDesign, match=r"heavier"):
         Training(task="swim", robot=ROBOTS["caiman"])
     with pytest.raises(OutsideLimits, match="measured curves"):
         Training(robot=ROBOTS["salamander"], gait=GAITS["animal_walk"])

@@ -31,10 +31,11 @@ Say on one page whether suchus can run here: versions, threads, a short walk, th
 browser, extras. The exit code is 0 when it can run, and 2 when it cannot."""
 _EXTRAS = {
     "viewer": "suchus view, and suchus demo live",
-    "optimise": "suchus optimise",
+    "optimise": "suchus optimise and suchus train",
     "capture": "tracks of DeepLabCut, SLEAP, LightningPose, Anipose, C3D; films",
     "gym": "Gymnasium tasks",
     "usd": "suchus export --format usd",
+    "onnx": "suchus export --format onnx",
     "hardware": "suchus drive and suchus calibrate, with real servos",
     "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",

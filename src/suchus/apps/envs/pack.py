@@ -246,7 +246,7 @@ class Pack:
         self._observer = Observer(task.robot, count, task.observed)
         self._tracking = Tracking(task, count)
         self._needs_tracking = task.commands is not None or "tracking_error" in task.observed
-        self._has_further = self._needs_tracking or task.told
+        self._has_further = self._needs_tracking or task.shows_failures
         self._goals = np.zeros((count, 2))
         self._commanded = self._actor.target  # a view; the actor writes it
         self._command_change = np.zeros_like(self._commanded)
@@ -393,9 +393,9 @@ class Pack:
                 work += self.loop.batch.effort[..., ABSOLUTE_POWER].sum(axis=1) * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
         if self._needs_tracking:
-            moved = self.loop.sensors["centre_of_mass"] - last_position
+            step_displacement = self.loop.sensors["centre_of_mass"] - last_position
             lag = self._commanded - self.loop.sensed().servo_position
-            self._tracking.step(active_mask, moved, self._facing(), self.command, lag)
+            self._tracking.step(active_mask, step_displacement, self._facing(), self.command, lag)
         return self._terms(active_mask, last_position, last_goal_distance, work, (command_change**2).sum(axis=1))
 
     def record(self, robot: int) -> xr.Dataset:

@@ -445,7 +445,7 @@ class Task:
     """The goal, at which the episode ends; None: no goal."""
     commands: Commands | None = None
     """Speeds and turning rates that are commanded; None: no commands."""
-    told: bool = False
+    shows_failures: bool = False
     """Whether the observation says which servo has failed."""
     readings: tuple[str, ...] | None = None
     """Readings of the observation, in the order of their columns; None: those of ``observed`` for the task's goal,
@@ -471,7 +471,7 @@ class Task:
             *BASIC_READINGS,
             *(GOAL_READINGS if self.goal is not None else ()),
             *(COMMAND_READINGS if self.commands is not None else ()),
-            *(FAILURE_READINGS if self.told else ()),
+            *(FAILURE_READINGS if self.shows_failures else ()),
         )
 
     @property
@@ -565,7 +565,7 @@ class Task:
             check.number("least_height", 0.0, 10.0, "m")
             check.number("noise", 0.0, 1.0, "")
             check.number("delay", 0.0, 20 * period, "s")
-            periods = self.delay / period if isinstance(self.delay, (int, float)) else 0.0
+            periods = self.delay / period
             check.that(
                 abs(periods - round(periods)) < 1e-6,
                 f"task.delay is {self.delay} s; whole control periods of {period} s are allowed",
@@ -575,7 +575,7 @@ class Task:
                 for names, has_source in (
                     (GOAL_READINGS, self.goal is not None),
                     (COMMAND_READINGS, self.commands is not None),
-                    (FAILURE_READINGS, self.told),
+                    (FAILURE_READINGS, self.shows_failures),
                 )
                 if not has_source
                 for name in names
@@ -583,8 +583,8 @@ class Task:
             ]
             check.that(
                 not without_source,
-                f"task.readings has {', '.join(without_source)}, which need a goal, commands or told in the task: give "
-                "it, or leave them out",
+                f"task.readings has {', '.join(without_source)}, which need a goal, commands or shows_failures in the "
+                "task: give it, or leave them out",
             )
             for name, multiple, divisor in (
                 ("decision", self.decision, period),

@@ -41,7 +41,7 @@ class Tracking:
     def step(
         self,
         active_mask: Bool[np.ndarray, " run"],
-        moved: Float[np.ndarray, "run 3"],
+        displacement: Float[np.ndarray, "run 3"],
         facing: Float[np.ndarray, " run"],
         command: Float[np.ndarray, "run 2"],
         lag: Float[np.ndarray, "run servo"],
@@ -50,7 +50,7 @@ class Tracking:
 
         Args:
             active_mask: which robots acted.
-            moved: displacement of each centre of mass in the world [m].
+            displacement: displacement of each centre of mass in the world [m].
             facing: yaw of each robot [rad].
             command: commanded speed [m/s] and turning rate [rad/s].
             lag: commanded minus measured angle of each servo [rad].
@@ -58,7 +58,7 @@ class Tracking:
         step = self._task.decision
         facing = np.where(np.isfinite(facing), facing, self._facing)
         turned = (facing - self._facing + pi) % (2 * pi) - pi
-        forward = moved[:, 0] * np.cos(facing) + moved[:, 1] * np.sin(facing)
+        forward = displacement[:, 0] * np.cos(facing) + displacement[:, 1] * np.sin(facing)
         motion = np.nan_to_num(np.stack([forward, turned], axis=1) / step)
         error = self._heading_error + command[:, 1] * step - turned
         lag = np.nan_to_num(np.abs(lag))

@@ -273,9 +273,9 @@ def _stored(store: Store, number: int, candidates: np.ndarray, make: Callable[[n
         make: evaluates the candidates.
     """
     if not store.has(number):
-        store.put(number, make(candidates).assign(asked=(("row", "parameter"), candidates)))
+        store.put(number, make(candidates).assign(candidates=(("row", "parameter"), candidates)))
     table = store.get(number)
-    if not np.array_equal(table.asked.values, candidates):
+    if not np.array_equal(table.candidates.values, candidates):
         raise IncompatibleRecord(
             f"{store.part(number)} holds other candidates than the training asks for; this machine or its libraries "
             "round differently: choose another place."

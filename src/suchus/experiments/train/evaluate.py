@@ -86,11 +86,11 @@ def evaluate_table(training: Training, candidates: Float[np.ndarray, "candidate 
     ]
     start = _whole_periods(training, START + _SETTLING_PERIODS * gait.period)
     end = _whole_periods(training, start + _WINDOW_PERIODS * gait.period)
-    moved = motion(_simulate(runs, end, fast=True), start, end)
+    measured_motion = motion(_simulate(runs, end, fast=True), start, end)
     return xr.Dataset(
         {
-            "speed": ("candidate", np.where(moved.has_fallen, np.nan, moved.speed)),
-            "turn": ("candidate", moved.turn),
+            "speed": ("candidate", np.where(measured_motion.has_fallen, np.nan, measured_motion.speed)),
+            "turn": ("candidate", measured_motion.turn),
         }
     )
 
@@ -132,14 +132,14 @@ def episode_run(training: Training, policy: Policy, episode: Episode) -> Run:
             rows += [(time, previous), (round(time + period, 12), value)]
         return tuple(rows)
 
-    told = tuple((fault.at, fault.part) for fault in episode.faults) if training.kind.is_told else ()
+    failures = tuple((fault.at, fault.part) for fault in episode.faults) if training.kind.reports_failures else ()
     run = Run(
         robot=training.robot,
         gait=training.base_gait,
         ground=training.ground,
         lake=training.lake,
         faults=episode.faults,
-        control=Learned(policy=policy, forward=course(episode.forward), turn=course(episode.turn), failures=told),
+        control=Learned(policy=policy, forward=course(episode.forward), turn=course(episode.turn), failures=failures),
     )
     return run if episode.body_seed < 0 else Tolerances().draw_run(run, episode.body_seed)
 
@@ -168,8 +168,8 @@ def evaluate_policies(
             np.array([getattr(episode, name)[number] for _ in policies for episode in episodes])
             for name in ("forward", "turn")
         )
-        moved = motion(record, start, end)
-        losses += tracking_loss(moved, forward, turn, policies[0].max_speed, policies[0].max_turn) / _SEGMENTS
+        measured_motion = motion(record, start, end)
+        losses += tracking_loss(measured_motion, forward, turn, policies[0].max_speed, policies[0].max_turn) / _SEGMENTS
     return np.asarray(losses.reshape(len(policies), len(episodes)).mean(axis=1))
 
 

@@ -30,14 +30,14 @@ class TaskKind(NamedTuple):
     """Whether the robot swims."""
     has_faults: bool = False
     """Whether a servo of a limb fails in each episode."""
-    is_told: bool = False
+    reports_failures: bool = False
     """Whether the policy is told which servo failed."""
 
 
 TASKS: Mapping[str, TaskKind] = MappingProxyType(
     {
         "velocity": TaskKind("to walk at a commanded speed and turning rate"),
-        "fault": TaskKind("the same, while a servo that it is told of fails", has_faults=True, is_told=True),
+        "fault": TaskKind("the same, while a servo that it is told of fails", has_faults=True, reports_failures=True),
         "velocity_untold": TaskKind("the same, while a servo fails of which it is not told", has_faults=True),
         "swim": TaskKind("to swim at a commanded speed and turning rate", is_swim=True),
     }
@@ -48,7 +48,7 @@ READINGS = ("command", "clock", "upward", "angular_velocity", "heading_error")
 """Readings of every network that is trained: command and clock, and what an IMU measures."""
 FAULT_READINGS = ("tracking_error",)
 """Readings that a task with faults adds: what the servos on the bus report."""
-TOLD_READINGS = ("failure",)
+FAILURE_READINGS = ("failure",)
 """Readings that a task adds in which the robot is told of its faults."""
 _PERIODS_PER_DECISION = 5
 _SPANS = {
@@ -196,7 +196,7 @@ class Training:
         """Readings of the network."""
         kind = self.kind
         fault_readings = FAULT_READINGS if kind.has_faults else ()
-        return READINGS + fault_readings + (TOLD_READINGS if kind.is_told else ())
+        return READINGS + fault_readings + (FAILURE_READINGS if kind.reports_failures else ())
 
     @property
     def is_symmetric(self) -> bool:

@@ -152,8 +152,8 @@ class TableSearch:
             reached = np.where(has_fallen, 0.0, self._archive_speed).max()
             self.max_speed = _rounded(_REACHED * max(float(reached), 1e-3 * self._training.robot.length))
         if self.generation == 2 * EXPLORATION and self._training.turn is None:
-            moves = ~has_fallen & (self._archive_speed > _MIN_SPEED_FRACTION * self.max_speed)
-            reached = np.where(moves, self._archive_turn, 0.0).max()
+            is_walking = ~has_fallen & (self._archive_speed > _MIN_SPEED_FRACTION * self.max_speed)
+            reached = np.where(is_walking, self._archive_turn, 0.0).max()
             self.max_turn = _rounded(_TURN_REACHED * max(float(reached), 1e-2))
 
     def _losses(self, points: np.ndarray, speed: np.ndarray, turn: np.ndarray) -> np.ndarray:

@@ -47,24 +47,24 @@ def motion(record: xr.Dataset, start: float, end: float) -> Motion:
     position = window.centre_of_mass.sel(xyz=["x", "y"]).transpose("run", "time", "xyz").values
     step = np.diff(position, axis=1)
     direction = 0.5 * (line[:, 1:] + line[:, :-1])
-    along = (step[..., 0] * np.cos(direction) + step[..., 1] * np.sin(direction)).sum(axis=1)
+    distance = (step[..., 0] * np.cos(direction) + step[..., 1] * np.sin(direction)).sum(axis=1)
     upright = rotation.upward(window.orientation.transpose("run", "time", "wxyz").values)[..., 2]
     has_fallen |= (np.where(np.isfinite(upright), upright, -1.0) < MIN_UPRIGHT).any(axis=1)
-    speed = np.where(has_fallen, 0.0, along / (time[-1] - time[0]))
+    speed = np.where(has_fallen, 0.0, distance / (time[-1] - time[0]))
     return Motion(speed, np.where(has_fallen, 0.0, turn), has_fallen)
 
 
 def tracking_loss(
-    moved: Motion, speed: np.ndarray | float, turn: np.ndarray | float, max_speed: float, max_turn: float
+    measured_motion: Motion, speed: np.ndarray | float, turn: np.ndarray | float, max_speed: float, max_turn: float
 ) -> Float[np.ndarray, " run"]:
     """Return the sizes of the errors of speed and turning rate over their greatest commands, summed [-].
 
     Args:
-        moved: motion of the runs.
+        measured_motion: motion of the runs.
         speed: commanded speed [m/s].
         turn: commanded turning rate [rad/s].
         max_speed: greatest commanded speed [m/s].
         max_turn: greatest commanded turning rate [rad/s].
     """
-    loss = np.abs(moved.speed - speed) / max_speed + np.abs(moved.turn - turn) / max_turn
-    return np.where(moved.has_fallen, FALL_LOSS, np.minimum(loss, FALL_LOSS))
+    loss = np.abs(measured_motion.speed - speed) / max_speed + np.abs(measured_motion.turn - turn) / max_turn
+    return np.where(measured_motion.has_fallen, FALL_LOSS, np.minimum(loss, FALL_LOSS))

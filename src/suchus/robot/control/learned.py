@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
 
@@ -12,7 +12,7 @@ from jaxtyping import Float
 from suchus.core import rotation
 from suchus.core.checks import Checks, Schedule
 from suchus.core.errors import Doubtful, UnknownName
-from suchus.robot.control.controller import Command, Runs, union_of_needs
+from suchus.robot.control.controller import SENSED, Command, Runs, union_of_needs
 from suchus.robot.control.facing import left_side_sign
 from suchus.robot.control.observation import Observer
 from suchus.robot.control.pattern_generator import TimeCourses, group_indices
@@ -66,10 +66,9 @@ class Learned:
     with the reading ``failure``."""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.policy, Policy):
-            from suchus.robot.policies import POLICIES  # noqa: PLC0415  as above
+        from suchus.robot.policies import POLICIES  # noqa: PLC0415  as above
 
-            object.__setattr__(self, "policy", POLICIES.resolve(self.policy))
+        object.__setattr__(self, "policy", POLICIES.resolve(self.policy))
         with Checks("learned", self) as check:
             if self.forward is not None:
                 check.course("forward", -100.0, 100.0, "m/s", start=0.0)
@@ -362,14 +361,10 @@ class _NetworkGroup:
 
 def _sensed_of(sensed: Sensed, runs: np.ndarray) -> Sensed:
     """Return the readings of some runs."""
-    return Sensed(
-        time=sensed.time,
-        **{
-            name: None if getattr(sensed, name) is None else getattr(sensed, name)[runs]
-            for name in Sensed.__dataclass_fields__
-            if name != "time"
-        },
-    )
+    rows: dict[str, Any] = {
+        name: None if getattr(sensed, name) is None else getattr(sensed, name)[runs] for name in SENSED
+    }
+    return replace(sensed, **rows)
 
 
 controller = Learned

@@ -231,8 +231,8 @@ def table_values(policy: Policy) -> Float[np.ndarray, "speed turn action"]:
     values = np.array(policy.table, dtype=float).reshape(len(policy.speeds), len(policy.turns), len(policy.parameters))
     rows = np.empty((*values.shape[:2], len(names)))
     for column, name in enumerate(names):
-        has = name in policy.parameters
-        rows[..., column] = values[..., policy.parameters.index(name)] if has else ACTIONS[name].neutral
+        is_present = name in policy.parameters
+        rows[..., column] = values[..., policy.parameters.index(name)] if is_present else ACTIONS[name].neutral
     rows.flags.writeable = False
     return rows
 
