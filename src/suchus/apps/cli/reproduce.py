@@ -77,7 +77,8 @@ def attempt(task: ExperimentTask, progress: Progress) -> TaskResult:
         return failed(task.name, str(error))
     except Exception as error:
         return failed(task.name, f"{type(error).__name__}: {error}", traceback.format_exc())
-    return TaskResult(result=result, summary=f"{_summary(result)} ({saved_run.seconds:.1f} s)")
+    page = saved_run.folder / "index.html"
+    return TaskResult(result=result, summary=f"{_summary(result)} ({saved_run.seconds:.1f} s): {page}")
 
 
 def reusable_result(task: ExperimentTask) -> TaskResult | None:
@@ -128,18 +129,19 @@ _MAX_DEFAULT_JOBS = 4
 _THREADS_PER_EXPERIMENT = 1
 """Threads of each of several experiments [-]: two would end the flow's small loops little sooner, for twice the
 processor time."""
-_SLOW_EXPERIMENTS = (
+_FIRST_EXPERIMENTS = (
+    "displacement",
     "swimming",
     "feedback",
     "joint_faults",
     "gallop_limits",
     "terrain",
     "bipedal_reach",
-    "displacement",
     "swim_free",
     "crawl_stability",
 )
-"""Slowest experiments, which are started first so that no process idles at the end."""
+"""Experiments that are started first: what most readers ask, so that its answer is there within a minute, and then the
+slowest, so that no process idles at the end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,7 +196,7 @@ def reproduce(words: Sequence[str]) -> int:
 
 
 def _run_tasks(tasks: Sequence[ExperimentTask], bars: Bars, *, jobs: int, anew: bool) -> list[TaskResult]:
-    """Return the result of each task; the longest are begun first.
+    """Return the result of each task; ``_FIRST_EXPERIMENTS`` are begun first.
 
     A process that dies takes its experiment with it and nothing else. When this one is stopped, by Ctrl-C or an error,
     the others end too, and leave nothing half-written.
@@ -264,4 +266,4 @@ def _report_crash(task: ExperimentTask, exit_code: int | None) -> TaskResult:
 
 
 def _rank(task: ExperimentTask) -> int:
-    return _SLOW_EXPERIMENTS.index(task.name) if task.name in _SLOW_EXPERIMENTS else len(_SLOW_EXPERIMENTS)
+    return _FIRST_EXPERIMENTS.index(task.name) if task.name in _FIRST_EXPERIMENTS else len(_FIRST_EXPERIMENTS)
