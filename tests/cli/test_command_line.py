@@ -174,7 +174,7 @@ def test_reproduce_leaves_out_what_does_not_reproduce_the_article(capsys, tmp_pa
     monkeypatch.setattr(type(suchus.experiments.catalog.EXPERIMENTS["broken"]), "reproduces", False)
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
     assert "broken" not in (tmp_path / "report.html").read_text()
-    assert capsys.readouterr().err.count("wave") == 1
+    assert capsys.readouterr().err.count("wave:") == 1
 
 
 @pytest.mark.usefixtures("broken")

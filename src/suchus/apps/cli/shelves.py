@@ -2,6 +2,7 @@
 
 import ast
 import tokenize
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from pkgutil import resolve_name
@@ -26,6 +27,7 @@ _LISTED = {
 }
 """Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")
+_NPY_PREAMBLE = 10  # magic string, version and length of the header of a file of NumPy [byte]
 """Catalogs whose modules declare things with names of their own."""
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
 
@@ -60,7 +62,7 @@ def title(source: Source) -> str:
     if source.file is None:
         return ""
     if source.file.suffix == ".npz":
-        return _policy_title(source)
+        return _policy_title(source.file)
     if source.file.suffix == ".toml":
         first_line = _text(source.file).lstrip().partition("\n")[0]
         return first_line.lstrip("# ") if first_line.startswith("#") else ""
@@ -73,15 +75,19 @@ def title(source: Source) -> str:
     return (ast.get_docstring(docstring_owner) or "").partition("\n")[0]
 
 
-def _policy_title(source: Source) -> str:
-    """Return task, robot and commands of a policy; empty where its file cannot be read."""
+def _policy_title(file: Path) -> str:
+    """Return task and robot of a policy, read without NumPy; empty where the file cannot be read."""
     try:
-        policy = resolve_name(_LISTED["policies"])[source.name]
-    except SuchusError:
+        with zipfile.ZipFile(file) as archive:
+            return f"{_npy_text(archive.read('task.npy'))}, a policy of {_npy_text(archive.read('robot.npy'))}"
+    except (OSError, KeyError, ValueError, zipfile.BadZipFile):
         return ""
-    return f"{policy.task} of {policy.robot}: up to {policy.max_speed:.3g} m/s and {policy.max_turn:.3g} rad/s, " + (
-        "a table and a network" if policy.layers else "a table"
-    )
+
+
+def _npy_text(content: bytes) -> str:
+    """Return the text in a file of NumPy that holds nothing else: its header begins with its length."""
+    start = _NPY_PREAMBLE + int.from_bytes(content[_NPY_PREAMBLE - 2 : _NPY_PREAMBLE], "little")
+    return content[start:].decode("utf-32-le").rstrip("\0")
 
 
 def _needs(source: Source) -> str:
