@@ -27,8 +27,8 @@ _LISTED = {
 }
 """Module and object of each catalog, by the catalog's name."""
 _SCATTERED = ("controllers", "measures")
-_NPY_PREAMBLE = 10  # magic string, version and length of the header of a file of NumPy [byte]
 """Catalogs whose modules declare things with names of their own."""
+_NPY_PREAMBLE = 10  # magic string, version and length of the header of a file of NumPy [byte]
 _USAGE = f"""usage: suchus list [{PROJECT} DIR]
 
 Show what stands in the catalogs, each with its title. What a project folder or another package puts there is marked
