@@ -1,4 +1,4 @@
-"""A quadruped that paddles across a pool and stands where it gets shallow: ground and water at once.
+"""A quadruped that paddles through a pool to a beach: ground and water at once.
 
 Usage: python examples/25_quadruped_in_a_pool.py [PICTURE.png]
 """
@@ -7,6 +7,8 @@ import sys
 
 import mujoco
 import numpy as np
+from matplotlib import pyplot
+from scipy.spatial import ConvexHull
 
 import suchus
 
@@ -39,7 +41,7 @@ XML = f"""
   <option timestep="0.002"/>
   <worldbody>
     <geom name="bottom" type="plane" size="5 5 0.1"/>
-    <geom name="beach" type="box" size="1.5 2 0.5" pos="2.6 0 -0.1" euler="0 -12 0"/>
+    <geom name="beach" type="box" size="1.5 2 0.5" pos="2.4 0 -0.1" euler="0 -12 0"/>
     <body name="trunk" pos="0 0 0.55">
       <freejoint/>
       <geom type="box" size="0.3 0.1 0.07" density="520"/>
@@ -54,16 +56,18 @@ XML = f"""
 """
 
 
-def command(time: float) -> np.ndarray:
+def command(time: float, yaw: float) -> np.ndarray:
     """Return the angles of hips and knees: paddles go back stretched and forward folded, diagonal legs together.
 
     Args:
         time: [s].
+        yaw: heading, to the left positive [rad]; legs on the side to which it turned stroke farther.
     """
     angles = []
-    for name in LEGS:
+    for name, (_, y) in LEGS.items():
+        stroke = 0.6 * min(max(1.0 + np.sign(y) * yaw, 0.3), 1.5)
         phase = 2 * np.pi * 1.2 * time + (np.pi if name in ("LF", "RH") else 0.0)
-        angles += [0.2 + 0.6 * np.sin(phase), 0.9 - 0.8 * np.cos(phase)]
+        angles += [0.2 + stroke * np.sin(phase), 0.9 - 0.8 * np.cos(phase)]
     return np.array(angles)
 
 
@@ -77,7 +81,7 @@ def swim(duration: float) -> tuple[mujoco.MjModel, mujoco.MjData, list[tuple[flo
     data = mujoco.MjData(model)
     history = []
     while data.time < duration:
-        data.ctrl[:] = command(data.time)
+        data.ctrl[:] = command(data.time, 2.0 * np.arctan2(data.qpos[6], data.qpos[3]))
         mujoco.mj_step(model, data, 10)
         carried = 1000.0 * suchus.water_loads(model, data).volume.sum() / model.body_subtreemass[0]
         history.append((data.time, carried, data.ncon))
@@ -90,14 +94,11 @@ def draw(path: str) -> None:
     Args:
         path: file to write.
     """
-    from matplotlib import pyplot
-    from scipy.spatial import ConvexHull
-
     rng = np.random.default_rng(0)
     points = rng.normal(size=(400, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
     figure, axes = pyplot.subplots(figsize=(9.0, 2.9), layout="constrained")
-    for duration, colour in ((2.0, "#1b6ca8"), (6.0, "#3a9188"), (14.0, "#c2571a")):
+    for duration, colour in ((0.2, "#1b6ca8"), (2.5, "#3a9188"), (5.0, "#c2571a")):
         model, data, _ = swim(duration)
         for i in range(model.ngeom):
             kind, size = model.geom_type[i], model.geom_size[i]
@@ -124,7 +125,7 @@ def draw(path: str) -> None:
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         draw(sys.argv[1])
-    model, data, history = swim(8.0)
+    model, data, history = swim(5.0)
     carried = np.array([row[1] for row in history])
     print(f"the quadruped paddles {data.qpos[0]:.2f} m in {data.time:.0f} s")
     print(f"water carries between {carried.min():.0%} and {carried.max():.0%} of its weight, the ground the rest")

@@ -103,8 +103,8 @@ def about_x(angle: float) -> tuple[float, float, float, float]:
 def issue_table() -> list[Check]:
     """Return the rows of the table in MuJoCo's issue 3452 that are about water.
 
-    The issue gives the keeled hull's acceleration but not its shape: a submerged hull whose keel gives that acceleration
-    stands for it, a cylinder 1 m wide of even mass.
+    The issue gives the keeled hull's acceleration but not its shape: a submerged cylinder 1 m wide, whose keel gives
+    that acceleration, stands for it.
     """
     checks = []
     neutral = ideal(body('type="ellipsoid" size="0.3 0.1 0.08" density="1000"'), level=20.0, added_mass=0.0)
@@ -279,7 +279,7 @@ def righting() -> list[Check]:
 
 
 def terminal_speeds() -> list[Check]:
-    """Return terminal speeds of spheres: with a drag coefficient, and in oil after Stokes; of a plate that falls flat."""
+    """Return terminal speeds of a sphere with a drag coefficient, of one in oil, and of a plate that falls flat."""
     checks = []
     radius, ratio = 0.05, 1.5
     volume = 4 / 3 * pi * radius**3
@@ -425,8 +425,8 @@ def light_bodies() -> list[Check]:
             data = mujoco.MjData(model)
             mujoco.mj_step(model, data, 5000)
             checks.append(
-                _check(f"light {name}, {integrator}, 2 ms", "vertical speed after 10 s", float(data.qvel[2]), 0.0, "m/s",
-                       0.05, "at rest")
+                _check(f"light {name}, {integrator}, 2 ms", "vertical speed after 10 s", float(data.qvel[2]), 0.0,
+                       "m/s", 0.05, "at rest")
             )  # fmt: skip
     return checks
 

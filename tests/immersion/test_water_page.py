@@ -23,6 +23,6 @@ def test_the_lines_of_the_page_run_one_after_the_other():
     blocks = re.findall(r"```python\n(.*?)```", PAGE, re.S)
     assert len(blocks) >= len(THREADS)
     for block in blocks:
-        exec(compile(block, "water_in_mujoco.md", "exec"), names)  # noqa: S102 - the page's own lines
+        exec(compile(block, "water_in_mujoco.md", "exec"), names)
     data = names["data"]
     assert data.time > 0.0

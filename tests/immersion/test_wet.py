@@ -151,7 +151,7 @@ def test_a_mesh_of_a_box_does_what_the_box_does():
 def test_a_solid_has_volume_centre_and_half_axes_of_its_ellipsoid():
     points = np.random.default_rng(1).normal(size=(4000, 3))
     points *= np.array([0.3, 0.2, 0.1]) / np.linalg.norm(points, axis=1)[:, None]
-    shifted = points + [1.0, 2.0, 3.0]
+    shifted = points + np.array([1.0, 2.0, 3.0])
     faces = ConvexHull(shifted).simplices
     surface = solid(shifted, faces, "egg", is_convex=True)
     assert surface.volume == pytest.approx(4 / 3 * pi * 0.006, rel=5e-3)

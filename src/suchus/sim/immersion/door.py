@@ -120,11 +120,12 @@ def wet(
         UnreadableFile: MuJoCo cannot read the file.
     """
     spec = _specification(source)
+    pull = spec.option.gravity
     medium = Medium(
         level=level, density=density, viscosity=viscosity,
         waves=(waves,) if isinstance(waves, Wave) else tuple(waves),
-        current=current if isinstance(current, Current) else Current(velocity=tuple(current)),
-        added_mass=added_mass, splash=splash, lift=lift, gravity=tuple(map(float, spec.option.gravity)),
+        current=current if isinstance(current, Current) else Current(velocity=current),
+        added_mass=added_mass, splash=splash, lift=lift, gravity=(float(pull[0]), float(pull[1]), float(pull[2])),
     )  # fmt: skip
     _check_options(spec)
     wetting.install()

@@ -3,8 +3,9 @@
 from suchus.robot.design.ground import ARENAS, Ground
 from suchus.sim.fault import Fault
 from suchus.sim.faults import Backlash, Deaf, Delayed, Frozen, Limp, Locked, LostFoot, Offset, Slow, Weak
+from suchus.sim.immersion.sea import Wave
 from suchus.sim.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
-from suchus.sim.land.lake import Lake, Wave
+from suchus.sim.land.lake import Lake
 from suchus.sim.land.live import Live
 from suchus.sim.land.loop import CONTROL_PERIOD
 from suchus.sim.land.push_search import smallest_pushes

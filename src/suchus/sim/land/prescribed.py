@@ -24,8 +24,9 @@ from suchus.robot.design.pieces import pieces
 from suchus.robot.motion import Gait, movement
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.sim.immersion import wetting
+from suchus.sim.immersion.sea import DEEPEST
 from suchus.sim.land.corrected import correct
-from suchus.sim.land.lake import DEEPEST, Lake
+from suchus.sim.land.lake import Lake
 from suchus.sim.model.build import SNOUT
 from suchus.sim.model.wet import wet_model
 

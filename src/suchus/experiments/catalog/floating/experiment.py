@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import pi, radians
+from math import nan, pi, radians
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import LIMBS_UP, cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
+from suchus.sim.land.afloat import INDIFFERENT
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -221,8 +222,9 @@ class Floating(Experiment):
         final_roll = np.abs(roll[-1, -rest_interval.sizes["time"] :])
         is_upright = np.abs(roll[-1]) < _UPRIGHT
         first_upright = int(np.flatnonzero(~is_upright)[-1]) + 1 if not is_upright.all() else 0
-        righting_time = float(record.time[first_upright]) if first_upright < len(is_upright) else float("nan")
         hull_record, bare_record = record.sel(hull="floating"), record.sel(hull="bare")
+        has_righted = float(hull_record.static_surplus) < 0.0 and 0 < first_upright < len(is_upright)
+        righting_time = float(record.time[first_upright]) if has_righted else nan
         return Measures(
             {
                 "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
@@ -246,6 +248,12 @@ class Floating(Experiment):
                 if np.isfinite(float(statics[f"static_{name}"]))
             },
         )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Return the reason for the outcome; a robot is indifferent where its metacentric height is next to zero."""
+        height = measures.get("metacentric_height_floating", nan)
+        further = {"is_indifferent": abs(height) <= INDIFFERENT * self.robot.length}
+        return self.render_explanation({"metacentric_height_floating": height, **measures}, **further)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the righting lever with the rolls, and the checks against exact answers."""
