@@ -27,7 +27,7 @@ _LIMB_KINDS: Mapping[type, str] = {FootPath: "path", Sweep: "sweep", FixedLimbs:
 
 
 def robot_facts(robot: Robot) -> dict[str, Any]:
-    """Return what the posture of a gait and the physics need of a robot, in SI units; ranges without end are None."""
+    """Return what the posture of a gait and the physics need of a robot, in SI units; unbounded ranges are None."""
     robot_layout = layout(robot)
     return {
         "name": robot.name,
