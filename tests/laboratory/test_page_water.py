@@ -6,8 +6,8 @@ import pytest
 from tests.laboratory.page_modules import needs_node, run
 
 from suchus.apps.laboratory.description import physics_facts, piece_facts
+from suchus.core import water_table as table
 from suchus.robot.design import GRAVITY
-from suchus.robot.design import water_table as table
 from suchus.robot.design.pieces import pieces
 from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from suchus.apps.viewer.knobs import Knob, knobs_of
+from suchus.core.water_table import COLUMNS, pack_table, unpack_table
 from suchus.robot.control import OpenLoop, Swimming
 from suchus.robot.design import GRAVITY, Robot, layout, servo_ranges
 from suchus.robot.design.layout import LIMB_AXES
@@ -15,7 +16,6 @@ from suchus.robot.design.limb import Girdle
 from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import control_period, physics_step
 from suchus.robot.design.water import Water
-from suchus.robot.design.water_table import COLUMNS, pack_table, unpack_table
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.motion import START, FixedLimbs, FootPath, Gait, Sweep
 from suchus.robot.motion.axis import Hinges, pitch_hinges, yaw_hinges
