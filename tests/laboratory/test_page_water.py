@@ -11,7 +11,8 @@ from suchus.robot.design import GRAVITY
 from suchus.robot.design.pieces import pieces
 from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Lake, wetting
+from suchus.sim.immersion import wetting
+from suchus.sim.land import Lake
 from suchus.sim.model.wet import wet_model
 
 pytestmark = needs_node
