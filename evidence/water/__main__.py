@@ -11,7 +11,7 @@ DATA = Path(__file__).parent / "data" / "checks.csv"
 """The checks as data."""
 PAGE = ROOT / "docs" / "water_in_mujoco.md"
 """The page that shows them."""
-START, END = "<!-- water checks: made by python -m evidence.water -->", "<!-- /water checks -->"
+START, END = "<!-- water_checks: made by python -m evidence.water -->", "<!-- /water_checks -->"
 """Lines of the page between which the tables stand."""
 FIELDS = ("group", "case", "quantity", "computed", "reference", "unit", "tolerance", "source")
 """Columns of the data."""
