@@ -89,15 +89,6 @@ _OTHERS = (
         for name in SEARCHES
     ),
     Kept(
-        name="lifted_design",
-        modules=(
-            "suchus.experiments.catalog.crawl_stability", "suchus.experiments.catalog.displacement",
-            "suchus.experiments.experiment",
-        ),
-        probe=partial(probes.experiment, "displacement"), renew="python tools/lifted_design.py",
-        sources=("optimise_lifted",),
-    ),
-    Kept(
         name="claims", modules=("suchus.experiments.study", "suchus.article.verdict"), probe=probes.claims,
         renew="suchus study claims --out out/claims && make renew NAME=out/claims/result/claims.json",
     ),

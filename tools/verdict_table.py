@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from evidence import renew, store
-from pages.stated import elsewhere, kept, templates, wrapped
+from pages.stated import kept, templates, wrapped
 from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import fragile
 from suchus.core.errors import IncompatibleRecord
@@ -66,8 +66,7 @@ def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
     count = count_evidence(
         {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
     )
-    told: dict[str, Any] = {name: kept(name) for name in ("crawl_stability", "servo_loads")}
-    told["elsewhere"] = elsewhere()
+    told: dict[str, Any] = {name: kept(name) for name in ("crawl_stability", "joint_faults", "servo_loads")}
     for name in ("verdicts", "result", "questions"):
         text = templates().get_template(f"readme/{name}.md").render(verdicts=table, count=count, **told)
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"

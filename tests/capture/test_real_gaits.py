@@ -69,7 +69,7 @@ def test_a_duty_factor_is_right_whatever_the_shape_of_the_swing(swing):
     assert np.median(width) < 0.05
 
 
-@pytest.mark.slow("two hundred walks take more than ten seconds")
+@pytest.mark.slow("more than ten seconds: two hundred walks")
 def test_two_hundred_gaits():
     """Duty factors of 0.5 to 0.85, six shapes of swing, straight and turning."""
     films = [

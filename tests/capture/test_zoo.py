@@ -40,7 +40,7 @@ def test_nobody_is_accused_falsely_and_exchanges_are_named():
     assert len(silent) <= (1 - MIN_NAMED) * count, silent
 
 
-@pytest.mark.slow("five hundred films take more than ten seconds")
+@pytest.mark.slow("more than ten seconds: five hundred films")
 def test_five_hundred_animals():
     false, silent, count = battery(range(500))
     assert len(false) <= MAX_FALSE_ACCUSATIONS * count, false

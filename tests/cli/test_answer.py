@@ -29,8 +29,8 @@ def test_the_numbers_that_carry_the_answer_are_measured(name, quick_outcome):
     assert said.replace(" ", "_") in question.answers
 
 
-def test_of_a_single_repeat_no_interval_is_shown():
-    for repeats, shown in (([0.4], ""), ([0.4, 0.4, 0.4, 0.5], "0.4 to 0.5 m")):
+def test_of_too_few_repeats_no_interval_is_shown():
+    for repeats, shown in (([0.4], ""), ([0.4] * 4 + [0.5], ""), ([0.4] * 5 + [0.5], "0.4 to 0.5 m")):
         row = answer_rows(("forward",), estimated("forward", np.array(repeats), "m"))
         assert row == [("forward", "0.4 m", shown)]
 

@@ -10,6 +10,7 @@ from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog.gallop_limits.experiment import (
     GallopLimits,
     _min_paying_speed,
+    _of_robots,
     experiment,
     fastest_gaits,
 )
@@ -30,8 +31,8 @@ def test_the_servo_that_is_needed_is_the_first_from_which_all_faster_ones_pay():
 
 
 def record(bound, flight, walk=0.4, spread=0.0):
-    """One torque, three servo speeds, a bound, a worse bound, a trot and a walk; bounds of three robots differ."""
-    built = spread * np.outer([1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0])
+    """One torque, three servo speeds, a bound, a worse bound, a trot and a walk; bounds of six robots differ."""
+    built = spread * np.outer([1.0, 1.0, 0.0, 0.0], np.linspace(-1.0, 1.0, 6))
     one = np.ones(3)
     speed = np.stack([np.array(bound), 0.1 * one, walk * one, 0.3 * one], axis=-1)[None]
     flies = np.stack([np.array(flight), 0.5 * one, 0.0 * one, 0.0 * one], axis=-1)[None]
@@ -62,6 +63,9 @@ def test_measures_of_a_record_with_a_known_answer():
     assert m["bound_over_walk"] == m["bound_over_walk_low"] == m["bound_over_walk_high"] == pytest.approx(0.5)
     apart = measured((0.2, 0.5, 0.9), (0.2, 0.2, 0.4), spread=0.1)
     assert [apart[f"bound_over_walk{end}"] for end in ("_low", "", "_high")] == pytest.approx([0.45, 0.5, 0.55])
+    few = record((0.2, 0.5, 0.9), (0.2, 0.2, 0.4))
+    few.built_speed[..., 5] = np.nan  # five robots are too few for an interval
+    assert np.isnan(GallopLimits().measure(few)["bound_over_walk_low"].value)
     assert (m["speed_bound_best"], m["servo_speed_best"], m["flight_bound_best"]) == (0.9, 28.0, 0.4)
     assert m["servo_speed_needed"] == 14.0
     assert m["gallops_share"] == pytest.approx(2 / 3)
@@ -88,7 +92,12 @@ def test_a_better_servo_does_what_a_lesser_one_does():
     assert bound.speed.values.tolist() == [[0.6, 0.6, 0.9]] * 2
     assert bound.flight.values.tolist() == [[0.4, 0.4, 0.2]] * 2  # of the gait that is taken
     assert walk.speed.values.tolist() == [[0.4, 0.4, 0.4]] * 2
-    assert bound.built_speed.values[1, 0].tolist() == [0.6, 0.6, 0.6]
+    assert bound.built_speed.values[1, 0].tolist() == [0.6] * 6
+
+
+def test_more_robots_are_built_with_servos_like_the_robots_own_or_lesser_ones():
+    table = _of_robots(np.arange(7.0), np.array([2, 1, 4]))
+    assert np.array_equal(table, [[0, 1, np.nan, np.nan], [2, *[np.nan] * 3], [3, 4, 5, 6]], equal_nan=True)
 
 
 def test_nothing_touches_in_flight():

@@ -92,7 +92,7 @@ def test_every_cell_of_the_matrix_is_there_with_its_interval(outcome):
     names += [f"{what}_{cell}{end}" for cell in cells for what, end in (("own_loss", "_limbs_only"), ("gain", ""))]
     for name in names:
         low, middle, high = (outcome.measures[f"{name}{end}"].value for end in ("_low", "", "_high"))
-        assert low <= middle <= high
+        assert low <= middle <= high or np.isnan([low, high]).all()  # two repeats are too few for an interval
         assert outcome.measures[name].unit == "-"
     for rule in EXPERIMENTS["joint_faults"].rules():
         assert rule.needs <= set(outcome.measures)

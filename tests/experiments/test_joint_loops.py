@@ -32,6 +32,7 @@ def record(droops=(0.03, 0.01), end=0.1, ripple=0.0):
     angle[1] = np.array(droops)[:, None]
     told = {
         "angle": (("test", "ki", "time"), angle),
+        "unlimited_angle": (("test", "time"), angle[:, 1] * np.array([1.0, 0.25, 1.0])[:, None]),
         "error_ms": (("ki", "servo"), np.array([[4e-4, 2e-4], [1e-4, 1e-4]])),
         "less_droop_ms": ("servo", np.array([1e-4, 5e-5])),
         "less_both_ms": ("servo", np.array([1e-4, 2e-5])),
@@ -43,15 +44,17 @@ def record(droops=(0.03, 0.01), end=0.1, ripple=0.0):
 
 def test_measures_of_a_record_with_a_known_answer():
     m = {name: measure.value for name, measure in JointLoops().measure(record(ripple=0.002)).items()}
-    assert m["droop_taken"] == pytest.approx(2 / 3)
+    assert m["droop_taken_pid"] == pytest.approx(2 / 3)
     assert m["load_error_pid"] == pytest.approx(0.01)
+    assert m["load_error_pid_unlimited"] == pytest.approx(0.0025)
+    assert m["droop_taken_pid_unlimited"] == pytest.approx(11 / 12)
     assert m["droop_by_kp"] == pytest.approx(0.03)
     assert m["ripple_pid"] == pytest.approx(0.002, rel=1e-3)
     assert m["tracking_error_ki_0"] == pytest.approx(np.sqrt(3e-4))
     assert m["tracking_by_droop"] == pytest.approx(0.75)
     assert m["tracking_by_damping"] == pytest.approx(0.05)
     assert JointLoops().measure(record(end=0.13))["step_error_pid"].value == pytest.approx(0.03)
-    assert JointLoops().measure(record(droops=(0.01, 0.03)))["droop_taken"].value == pytest.approx(-2.0)
+    assert JointLoops().measure(record(droops=(0.01, 0.03)))["droop_taken_pid"].value == pytest.approx(-2.0)
 
 
 def test_a_shortened_run_is_not_judged():

@@ -78,6 +78,31 @@ def test_a_rung_is_settled_over_the_most_cycles_whose_halves_agree():
     assert isnan(settle(half, MIN_SETTLED_CYCLES).relative_spread)  # the first cycle does not count
 
 
+def test_a_number_is_not_of_cycles_before_all_swims_are_settled():
+    values = np.array([9.0, 1.05, 1.05, *[1.0] * 8])
+    number = settle(lambda first, last: [float(values[first:last].mean())], 11, min_start=3)
+    assert number == SettledNumber(1.0, 1.0, 1.0, 0.0)  # the halves of the last ten agree too, with another mean
+
+
+@pytest.mark.parametrize(("late_cycles", "min_start"), [(0, 1), (2, 2)])
+def test_a_gain_counts_from_where_both_swims_are_settled_and_never_from_the_first_cycle(
+    late_cycles, min_start, monkeypatch
+):
+    starts = []
+
+    def settle_and_note(half, cycles, scale=1.0, min_start=1):
+        starts.append(min_start)
+        return settle(half, cycles, scale, min_start)
+
+    monkeypatch.setattr(ladder, "settle", settle_and_note)
+    record = rung()
+    scatter = 1.0 + 0.001 * np.array([0.0, 3.0, 1.0, 4.0, 1.5, 0.5, 2.0, 2.5, 3.5, 0.7])
+    record.ladder_speed[:] = record.ladder_speed.values[..., :1] * scatter
+    record.ladder_speed[{"ladder_motion": 0, "ladder_cycle": slice(0, late_cycles)}] *= 0.8
+    numbers(record)
+    assert starts[:2] == [min_start] * 2
+
+
 def test_both_starting_sides_count():
     found = settle(lambda a, b: [1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD], CYCLES)
     assert (found.low, found.high) == (1.0, 1.0 + 1.1 * MAX_SETTLED_SPREAD)

@@ -8,7 +8,7 @@ import xarray as xr
 
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.speed_range.experiment import _UNITS, _models, _with_other_servos
-from suchus.experiments.catalog.terrain.experiment import SINGLE, _meets_obstacle
+from suchus.experiments.catalog.terrain.experiment import FLAT_ARMS, SINGLE, _meets_obstacle
 from suchus.robot.design import layout
 from suchus.robot.design.ground import STONE, Bumps, Step, Stone
 from suchus.robot.design.servos import with_full_torque, with_named_servos, with_servos
@@ -158,15 +158,17 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
     for ground, erect in enumerate(ahead, start=1):
         forward[ground, arms.index("high_walk")] = 1.2 if erect else 0.8
     values = {name: np.zeros_like(forward) for name in ("aside", "fell", "belly")} | {"cost": np.ones_like(forward)}
-    values["cost"][0, arms.index("low_crawl")] = [0.5, 0.6]
+    flat_cost = np.array([np.linspace(0.5, 0.6, 6), np.ones(6)])
     met_by = np.ones_like(forward)
     met_by[2, arms.index("low_crawl"), 1] = met
     changes = {"change_tilt": np.array([[0.2, 1.1]]), "change_after": np.array([[0.5, 0.3]])}
     return xr.Dataset(
         {name: (("ground", "arm", "seed"), v) for name, v in (values | {"forward": forward, "met": met_by}).items()}
         | {name: (("change", "surface"), v) for name, v in changes.items()}
+        | {"flat_cost": (("flat_arm", "robot_built"), flat_cost)}
         | {"height": ("ground", [0.0, 0.03, 0.03, 0.04]), "size_of_robot": ((), 1.0)},
-        coords={"arm": arms, "kind": ("ground", ["bumps", "bumps", "step", "stone"]), "surface": ["even", "bumps"]},
+        coords={"arm": arms, "kind": ("ground", ["bumps", "bumps", "step", "stone"]), "surface": ["even", "bumps"]}
+        | {"flat_arm": list(FLAT_ARMS)},
     )
 
 
@@ -186,6 +188,16 @@ def test_erect_legs_are_ahead_where_they_get_farther_and_told_only_if_all_met():
     assert "met 100% of the bumps, 50% of the steps" in EXPERIMENTS["terrain"].explain(
         {n: m.value for n, m in missed.items()}
     )
+
+
+def test_what_is_kept_is_a_fraction_of_the_same_robots_even_ground():
+    record = rough_record()
+    record.forward[0, record.arm.values.tolist().index("high_walk")] = 0.75
+    found = {name: m.value for name, m in EXPERIMENTS["terrain"].measure(record).items()}
+    assert found["erect_open_loop_ahead_share"] == pytest.approx(2 / 3)
+    assert found["erect_open_loop_kept_share"] == 1.0  # 0.8 of 0.75 m is more than 1 of 1 m
+    record.forward[0, record.arm.values.tolist().index("high_walk")] = 1.25
+    assert EXPERIMENTS["terrain"].measure(record)["erect_open_loop_kept_share"].value == 0.0
 
 
 def test_terrain_and_speed_are_judged_only_by_runs_that_meet_what_is_judged():

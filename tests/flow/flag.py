@@ -288,7 +288,7 @@ class Flag:
         self.sim.advance(h)
         made, size = 0, 1.0
         while True:
-            middle = 0.5 * (began.position + posture.place)
+            middle = 0.5 * (began.position + posture.position)
             found = self.chain.force(middle, self.sim.last_loads("flag"), np.zeros(2))[3:]
             left, whole = newton(push, found)
             weight = np.diag(whole)
@@ -298,13 +298,13 @@ class Flag:
                 break
             push = push - np.linalg.solve(whole, left)
             other = gone(push)
-            more = self.chain.twists(posture.place, other.rate - posture.rate, np.zeros(2), 2)
+            more = self.chain.twists(posture.position, other.rate - posture.rate, np.zeros(2), 2)
             posture, made = other, made + 1
             self.path.go(start, began, start + h, posture)
             self.sim.accelerate({"flag": more})
         self.force, self.push, self.posture = found, push, posture
         whole = self.sim.last_loads("flag").total.force
-        self.rows.append([self.time, *self.beam.tip(posture.place[3:]), *whole, size, made])
+        self.rows.append([self.time, *self.beam.tip(posture.position[3:]), *whole, size, made])
         self._renew()
 
     # --- stopped and gone on ---------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from suchus.core.errors import Doubtful
 from suchus.flow import signals
 from suchus.flow.compiled import PAD
 from suchus.flow.farfield import Fading, OpenWater
+from suchus.flow.watch import Watch
 
 NO_BODY = (PAD, PAD, PAD, PAD)
 
@@ -229,3 +230,24 @@ def test_a_wake_that_leaves_too_near_behind_a_body_is_said():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         wake(0.01, 1.0)  # it has not come there yet
+
+
+def test_a_wake_leaves_only_through_a_side_to_which_the_far_water_has_carried_it():
+    grid = flow.Grid.covering((-1.5, 1.5), (-1.0, 1.0), cell=1 / 16)
+
+    def start(x, y):  # a vortex at the top side
+        size = np.exp(-((x - 0.9) ** 2 + (y - 0.9) ** 2) / 0.02)
+        return -(y - 0.9) * size, 1.0 + (x - 0.9) * size
+
+    body = flow.Body(shape=flow.Ellipse(length=1.0, width=0.25))
+    setup = flow.Setup(
+        grid=grid, viscosity=0.002, stream=(0.0, 1.0), start=start, bodies=(body,), coarse=True, step=0.005
+    )
+    sim = flow.Simulation(setup)
+    sim.advance(0.005)
+    watch = Watch(setup)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        watch.wakes(sim.water, 0.5)  # half a metre, and 0.9 m lie between the body and the side
+    with pytest.warns(Doubtful, match="the wake leaves through the top side"):
+        watch.wakes(sim.water, 1.0)

@@ -27,6 +27,7 @@ from suchus.sim.metrics import (
     roll_peak_to_peak,
     sensed_phase,
     slip,
+    smaller_swing,
     speed,
     spine_sine_share,
     spine_swings,
@@ -275,6 +276,9 @@ def test_a_bend_is_the_sum_of_its_joints_to_the_right():
 def test_a_tail_that_never_gets_to_one_side_swings_less_than_nothing_there():
     record = bending(0.3 + 0.1 * np.sin(2 * np.pi * (TIME - 1) / 4))
     assert float(tail_swing_least(record)) == pytest.approx(-0.2, rel=1e-3)
+    both_sides = record.time.copy(data=0.1 + 0.3 * np.sin(2 * np.pi * (TIME - 1) / 4))
+    assert float(smaller_swing(both_sides)) == pytest.approx(0.2, rel=1e-3)
+    assert float(smaller_swing(-both_sides)) == pytest.approx(0.2, rel=1e-3)
     assert float(tail_swings(record)) == 0.0
 
 

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from suchus.robot.design import GRAVITY
+from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
@@ -63,6 +64,7 @@ def test_the_period_decides_what_is_short():
 
 TIMESTEPS = (0.005, 0.002, 0.001, 0.0005)
 CONVERGED = {"duty": 0.01, "phase": 0.01, "two": 0.015}
+"""Greatest change with the time step [cycle]; that both ends of a stance move by a sample of the record is none."""
 
 
 def gait_measures(gait, timestep):
@@ -75,11 +77,13 @@ def gait_measures(gait, timestep):
 
 def assert_converged(gait, timesteps):
     fine = gait_measures(GAITS[gait], timesteps[-1])
+    samples = 2.0 * control_period(ROBOTS["caiman"]) / GAITS[gait].period * (1.0 + 1e-9)
+    bounds = {name: max(bound, samples) for name, bound in CONVERGED.items()}
     for timestep in timesteps[:-1]:
         coarse = gait_measures(GAITS[gait], timestep)
-        assert np.abs(coarse["duty"] - fine["duty"]).max() < CONVERGED["duty"], timestep
-        assert np.abs((coarse["phase"] - fine["phase"] + 0.5) % 1.0 - 0.5).max() < CONVERGED["phase"], timestep
-        assert abs(coarse["two"] - fine["two"]) < CONVERGED["two"], timestep
+        assert np.abs(coarse["duty"] - fine["duty"]).max() <= bounds["duty"], timestep
+        assert np.abs((coarse["phase"] - fine["phase"] + 0.5) % 1.0 - 0.5).max() <= bounds["phase"], timestep
+        assert abs(coarse["two"] - fine["two"]) <= bounds["two"], timestep
 
 
 @pytest.mark.parametrize("gait", ["belly_crawl", "high_walk", "semi_erect"])

@@ -78,10 +78,20 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
             f"_VOICE_STYLES: {colour} {sign} the other way round": "Colours and signs of a figure, and no measure."
             for colour, sign in (("#cfe8d5", "✓"), ("#f3d0c9", "×"), ("#f6e8b8", "?"), ("#ececec", ""))
         },
-        "_waving: swing(cycle_course, 1).share[0] is the last": "What is read there is the tip's place alone.",
+        "_waving: swing(cycle_course, 1).variance_fraction[0] is the last": (
+            "What is read there is the tip's position alone."
+        ),
+        **dict.fromkeys(
+            (
+                "settle: min(MIN_SETTLED_CYCLES, cycles - 1) is max",
+                "_numbers: max((mean.start for mean in means)) is min",
+                "_numbers: max(start, 1) is min",
+            ),
+            "Of ten cycles, as they are here, eight count either way; test_swim_ladder.py looks at it.",
+        ),
         "_pushing: first_quarter - third_quarter * (1.0, -1.0) the other way round": _SIZE,
     },
-    "joint_loops": {"measure: float(final_interval.sel(test='step')[-1]) - step the other way round": _SIZE},
+    "joint_loops": {"_loop_errors: float(angle.sel(test='step')[-1]) - step the other way round": _SIZE},
     "gallop_limits": {
         "_min_paying_speed: speeds[all_faster_pay][0] is the last": "In its quick form one speed pays at most."
     },
@@ -92,6 +102,10 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     },
     "terrain": {
         "_most_tilt: abs(angles['pitch']).max('time') is min": "In its quick form the roll is the greater tilt.",
+        "_rough_measures: rough_record.forward / even_distances the other way round": (
+            "In its quick form not all robots come to what stands in their path, so that nothing is said; "
+            "test_terrain_experiments.py says something."
+        ),
     },
     "feedback": {
         "_loop_measures: _last_seconds(pitch, gait.period).mean() ... .period).mean() the other way round": _SIZE,

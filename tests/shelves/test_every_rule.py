@@ -51,6 +51,16 @@ def test_a_rule_is_of_a_claim_and_of_the_experiment_beside_which_it_stands(claim
     assert all(clause.why for clause in rule.holds)
 
 
+@EACH_RULE
+def test_a_clause_above_or_below_zero_says_which_difference_matters(claim):
+    for clause in ALL[claim][1].holds:
+        if clause.bound == 0.0:
+            assert clause.smallest_effect, f"{clause.measure} needs a smallest effect that matters"
+        if clause.smallest_effect:
+            assert clause.smallest_effect.size > 0.0
+            assert len(clause.smallest_effect.why) > 20
+
+
 @pytest.mark.parametrize("claim", [claim for claim, (_, rule) in ALL.items() if rule.control])
 def test_a_control_group_says_why_it_is_the_one_of_the_claim(claim):
     _, rule = ALL[claim]
@@ -99,6 +109,12 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
             for sign in (-1, 1):
                 moved = clause.bound + sign * _OFF * (abs(clause.bound) or 1.0)
                 yield f"{name} moved to {moved:.4g}", _with(rule, i, (replace(clause, bound=moved),)), 1.0
+        effect = clause.smallest_effect
+        for factor in (1.0 - _OFF, 1.0 + _OFF) if effect else ():
+            moved_effect = replace(effect, size=factor * effect.size)
+            yield f"{name}: effect x {factor}", _with(rule, i, (replace(clause, smallest_effect=moved_effect),)), 1.0
+        if effect:
+            yield f"{name}: any effect", _with(rule, i, (replace(clause, smallest_effect=None),)), 1.0
     for what, control in _without_control(rule):
         yield f"{rule.claim}: {what}", replace(rule, control=control), 1.0
     for kind in _KINDS:

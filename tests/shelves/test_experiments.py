@@ -83,7 +83,9 @@ def outside(measures):
     found = []
     for name, value in measures.items():
         low, high = measures.get(f"{name}_low"), measures.get(f"{name}_high")
-        if low is not None and high is not None and isfinite(value) and not low - 1e-12 <= value <= high + 1e-12:
+        if low is None or high is None or np.isnan([low, high]).all():
+            continue  # an interval that is unknown holds nothing
+        if isfinite(value) and not low - 1e-12 <= value <= high + 1e-12:
             found.append(f"{name}: {value} is not from {low} to {high}")
     return found
 
@@ -91,6 +93,8 @@ def outside(measures):
 def test_a_number_outside_its_interval_is_found():
     assert outside({"x": 2.0, "x_low": 1.0, "x_high": 3.0, "y_low": 4.0}) == []
     assert len(outside({"x": 0.9, "x_low": 1.0, "x_high": 3.0})) == 1
+    assert outside({"x": 0.9, "x_low": np.nan, "x_high": np.nan}) == []
+    assert len(outside({"x": 0.9, "x_low": 0.5, "x_high": np.nan})) == 1
 
 
 def test_a_rule_decides_by_the_intervals_that_there_are(quick):

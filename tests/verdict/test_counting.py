@@ -58,8 +58,9 @@ def test_a_fit_and_an_identity_that_fail_are_no_evidence_either():
     assert count.fragile == 1
     assert str(count) == (
         "Of 8 claims of the article 2 could come out either way: 1 reproduced, 1 contradicted; 1 of these is fragile, "
-        "since more than one in ten plausible designs say otherwise. The others could not: 2 read back or identities "
-        "of formulas (1 not so as printed), 2 fitted (1 came out), 1 said of animals (the robot does the same in "
+        "since more than one in ten plausible designs say otherwise. The others could not: 2 read back, or "
+        "consequences of formulas or symmetry (1 do not hold), 2 fitted (1 came out), 1 said of animals (the robot "
+        "does the same in "
         "1) and 1 not testable."
     )
 

@@ -26,7 +26,7 @@ if __name__ == "__main__":
 from evidence import renew, store
 from pages import passages
 from suchus.article.paper import AUTHORS, CLAIMS, TITLE
-from suchus.article.verdict import SHARES, SPARSE_SHARES, Verdict, judge, ladder
+from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
@@ -154,18 +154,11 @@ def _filled(block: str, width: int) -> str:
     )  # fmt: skip
 
 
-def elsewhere() -> dict[str, Verdict]:
-    """Return the verdicts on the design that was searched for, of the claims whose control group walks only there."""
-    measures = kept("lifted_design")
-    asked = (rule for rule in RULES.values() if rule.control and rule.control.needs)
-    return {rule.claim: judge(rule, measures, {}) for rule in asked if rule.needs <= set(measures)}
-
-
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
     verdicts = kept("verdicts")
     known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
-             "verdicts": verdicts, "elsewhere": elsewhere(), "unruled": UNRULED,
+             "verdicts": verdicts, "unruled": UNRULED,
              "rules": RULES, "servo_loads": kept("servo_loads"),
              "count": count_evidence({claim: row["verdict"] for claim, row in verdicts.items()},
                               [claim for claim, row in verdicts.items() if row["fragile"]])}  # fmt: skip

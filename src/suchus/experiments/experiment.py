@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -19,6 +19,7 @@ from jinja2.ext import Extension
 
 from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
+from suchus.core.intervals import fraction_interval, median_interval
 from suchus.core.progress import Progress, silent, staged
 from suchus.experiments.claims import check_claims, known_claims, rules_of
 from suchus.robot.design import Robot, check_needs
@@ -28,8 +29,7 @@ from suchus.robot.motion import Gait, check_limits, suits
 
 __all__ = [
     "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "SimulationResult", "ends", "estimated",
-    "ranged",
-    "silent", "staged", "stopwatch", "templates", "write",
+    "estimated_fraction", "ranged", "silent", "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
@@ -83,46 +83,43 @@ class Measures(dict[str, Measure]):
         self |= Measures(*parts, measures)
 
 
-_RESAMPLES = 2000
-"""Number of bootstrap resamples of an ensemble [-]."""
-_CONFIDENCE = 0.95
-"""Fraction of the resamples whose center lies in the interval [-]."""
+def estimated(name: str, repeats: Any, unit: str) -> Measures:
+    """Return the median of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
 
-
-def estimated(name: str, repeats: Any, unit: str, *, middle: Callable[..., Any] = np.median) -> Measures:
-    """Return the center of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
-
-    The interval is that of the bootstrap (Efron 1979): the center of ensembles that are drawn from this one with
-    replacement, with the same draws for every ensemble of this size. It is the uncertainty of the center, and becomes
-    narrower with the number of repeats.
+    The interval is that of order statistics, see ``median_interval``: it is the uncertainty of the median, holds for
+    any distribution, and becomes narrower with the number of repeats. With fewer than six repeats both ends are NaN,
+    which is unknown: such a measure decides no clause.
 
     Args:
         name: name of the measure.
-        repeats: number of every repeat; if one is not finite, the interval is the center alone.
+        repeats: number of every repeat; if one is not finite, measure and interval are NaN.
         unit: unit of the numbers.
-        middle: function for the center, median or mean, along an axis.
     """
     values = np.asarray(repeats, float).ravel()
-    center = float(middle(values, axis=-1))
-    if np.isfinite(values).all():
-        lower_bound, upper_bound = np.quantile(
-            middle(values[_resample_indices(values.size)], axis=-1), [(1 - _CONFIDENCE) / 2, (1 + _CONFIDENCE) / 2]
-        )
-    else:
-        lower_bound = upper_bound = center
-    return Measures(
-        {
-            name: Measure(center, unit),
-            f"{name}_low": Measure(float(min(lower_bound, center)), unit),
-            f"{name}_high": Measure(float(max(upper_bound, center)), unit),
-        }
-    )
+    lower_bound, upper_bound = median_interval(values)
+    return _measure_with_interval(name, float(np.median(values)), lower_bound, upper_bound, unit)
 
 
-@cache
-def _resample_indices(count: int) -> np.ndarray:
-    """Return the indices of the repeats in each resample, shape (resample, count)."""
-    return np.random.default_rng(count).integers(count, size=(_RESAMPLES, count))
+def estimated_fraction(name: str, outcomes: Any) -> Measures:
+    """Return the fraction of repeats in which an event occurred as ``NAME``, and its exact 95 % interval.
+
+    The ends are ``NAME_low`` and ``NAME_high``, after Clopper and Pearson, see ``fraction_interval``.
+
+    Args:
+        name: of the measure.
+        outcomes: whether the event occurred, of every repeat; if one is NaN, measure and interval are NaN.
+    """
+    values = np.asarray(outcomes, float).ravel()
+    if not np.isfinite(values).all():
+        return _measure_with_interval(name, nan, nan, nan, "-")
+    lower_bound, upper_bound = fraction_interval(int(values.sum()), values.size)
+    return _measure_with_interval(name, float(values.mean()), lower_bound, upper_bound, "-")
+
+
+def _measure_with_interval(name: str, center: float, lower_bound: float, upper_bound: float, unit: str) -> Measures:
+    """Return a measure with the ends of its interval."""
+    numbers = {name: center, f"{name}_low": lower_bound, f"{name}_high": upper_bound}
+    return Measures({key: Measure(value, unit) for key, value in numbers.items()})
 
 
 def ranged(name: str, value: Any, repeats: Any, unit: str) -> Measures:

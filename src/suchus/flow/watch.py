@@ -82,6 +82,10 @@ class Watch:
     errors: list[float] = field(default_factory=list)
     """Present estimated error of each body's force [-]."""
     _issued_keys: set[str] = field(default_factory=set)
+    _carried: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    """How far the far water has moved past the domain [m]."""
+    _carried_time: float = 0.0
+    """Time until which that counts [s]."""
 
     def layers(self, errors: list[float]) -> None:
         """Store the estimated errors of all bodies' forces and warn of those that are large.
@@ -154,6 +158,9 @@ class Watch:
     def wakes(self, water: Fluid, time: float) -> None:
         """Warn of a wake that leaves through a side so near behind a body that the forces depend on the side.
 
+        The far water must have carried the wake there since the start: a domain that follows a body sways with it, and
+        a vortex that comes to a side beside it is no wake that leaves.
+
         Args:
             water: the water after a step, with the bodies.
             time: time, for the message [s].
@@ -162,6 +169,10 @@ class Watch:
         if len(water.layers) > 1 or window[1] <= window[0]:
             return
         margin, spin = REACH + 3, None
+        stream = np.array(water.border.stream)
+        self._carried = self._carried + stream * (time - self._carried_time)
+        self._carried_time = time
+        far = float(np.linalg.norm(self._carried))
         spans = [(window[2 * d] - PAD + margin, window[2 * d + 1] - PAD - margin) for d in reversed(range(ndim))]
         for edge in water.border.edges:
             if edge.convective_weight < 0.5:
@@ -169,6 +180,9 @@ class Watch:
             start, stop = spans[edge.axis]
             width = max(b - a for d, (a, b) in enumerate(spans) if d != edge.axis)
             distance = start if edge.is_lower_side else edge.cells - stop
+            carried = (-1.0 if edge.is_lower_side else 1.0) * self._carried[edge.axis]
+            if carried < max(0.5 * far, distance * water.grid.cell):
+                continue
             sheds = (
                 ndim == 2 and stop - start <= width * MAX_BLUNT_LENGTH and self._reynolds(water, width) > MIN_STREET_RE
             )

@@ -50,15 +50,17 @@ def rest_ground(tracks: Tracks, period: float) -> GroundMotion:
     deviation = velocities - mean
     error = float(np.sqrt(np.sum(weights[:, None] * deviation**2) / np.sum(weights) / (len(times) - 1)))
     trunk = tracks.at(tracks.line[1])[:, :2]
-    seen = np.flatnonzero(np.isfinite(trunk).all(axis=1))
-    body_velocity = (trunk[seen[-1]] - trunk[seen[0]]) / (tracks.time[seen[-1]] - tracks.time[seen[0]])
+    seen_frames = np.flatnonzero(np.isfinite(trunk).all(axis=1))
+    body_velocity = (trunk[seen_frames[-1]] - trunk[seen_frames[0]]) / (
+        tracks.time[seen_frames[-1]] - tracks.time[seen_frames[0]]
+    )
     animal_speed = float(np.linalg.norm(body_velocity - mean))
     if speed < _MIN_SPEED * animal_speed or speed < _MIN_Z_SCORE * error or spread > _MAX_SPREAD * speed:
         return GroundMotion(tracks, 0.0, ())
     course = _ground_course(tracks.time, times, velocities, period)
     position = tracks.position.copy()
     position[..., :2] -= course[:, None]
-    corrected = Tracks(
+    corrected_tracks = Tracks(
         time=tracks.time,
         points=tracks.points,
         position=position,
@@ -71,7 +73,7 @@ def rest_ground(tracks: Tracks, period: float) -> GroundMotion:
         "animal's speed: the camera follows it, or it walks on a belt; positions are corrected by that, and intervals "
         "hold its uncertainty"
     )
-    return GroundMotion(corrected, _Z_95 * error, (note,))
+    return GroundMotion(corrected_tracks, _Z_95 * error, (note,))
 
 
 def _stance_velocities(

@@ -67,18 +67,28 @@ def find_exchange(tracks: Tracks, noise: Mapping[str, float], scale: float, walk
     penalties = body.penalties(identity)
     if sum(penalty.size for penalty in penalties) < _MIN_GAIN:
         return None
-    best_gain, best = _MIN_GAIN, None
+    best_gain, best_names = _MIN_GAIN, None
     for names in body.exchanges():
         assignment = identity | {right_name: track for track, right_name in names.items()}
-        changed = body.penalties(assignment)
-        affected = [penalty for penalty in changed if set(penalty.roles) & set(names)]
-        gain = sum(penalty.size for penalty in penalties) - sum(penalty.size for penalty in changed)
-        if gain > best_gain and all(penalty.size <= _MAX_REMAINDER for penalty in affected):
-            best_gain, best = gain, names
-    if best is None:
+        changed_penalties = body.penalties(assignment)
+        affected_penalties = [penalty for penalty in changed_penalties if set(penalty.roles) & set(names)]
+        gain = sum(penalty.size for penalty in penalties) - sum(penalty.size for penalty in changed_penalties)
+        if gain > best_gain and all(penalty.size <= _MAX_REMAINDER for penalty in affected_penalties):
+            best_gain, best_names = gain, names
+    if best_names is None or _is_mirrored(best_names):
         return None
-    worst = max((penalty for penalty in penalties if set(penalty.roles) & set(best)), key=lambda penalty: penalty.size)
-    return Exchange(best, _reason(worst))
+    worst_penalty = max(
+        (penalty for penalty in penalties if set(penalty.roles) & set(best_names)), key=lambda penalty: penalty.size
+    )
+    return Exchange(best_names, _reason(worst_penalty))
+
+
+def _is_mirrored(names: Mapping[str, str]) -> bool:
+    """Return whether left and right feet of a pair are exchanged, or of both, as in a picture that is mirrored.
+
+    These are compared frame by frame elsewhere.
+    """
+    return set(names) <= set(LEGS) and all(leg[1] == name[1] for leg, name in names.items())
 
 
 def _reason(penalty: _Penalty) -> str:
@@ -120,20 +130,11 @@ class _Body:
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def exchanges(self) -> list[dict[str, str]]:
-        """Return the exchanges that are considered: of two keypoints, and every permutation of the feet.
-
-        Left and right feet of one pair are not among them: they are compared frame by frame elsewhere, and both pairs
-        together are a picture that is mirrored.
-        """
+        """Return the exchanges that are considered: of two keypoints, and every permutation of the feet."""
         pairs = [{first: second, second: first} for first, second in combinations(self.names, 2)]
         orders = [dict(zip(self._legs, order, strict=True)) for order in permutations(self._legs)]
         feet = [{leg: name for leg, name in order.items() if leg != name} for order in orders]
-        exchanges = pairs + [names for names in feet if len(names) > 2]
-        return [
-            names
-            for names in exchanges
-            if not set(names) <= set(LEGS) or any(leg[1] != name[1] for leg, name in names.items())
-        ]
+        return pairs + [names for names in feet if len(names) > 2]
 
     def penalties(self, tracks_of: Mapping[str, str]) -> list[_Penalty]:
         """Return the penalties of all roles.
@@ -154,45 +155,46 @@ class _Body:
         distance = self._distance[i, j]
         fraction = _CHORD if distance > _LONG * self._scale else _SWAY
         tolerance = fraction * min(distance, self._scale) + self._pair_noise[i, j] / 2 + 1e-12
-        return _Penalty(_limited((self._spread[i, j] / tolerance) ** 2), "link", pair)
+        return _Penalty(_limited_power(self._spread[i, j] / tolerance), "link", pair)
 
     def _fold(self, triple: tuple[str, str, str], index: Mapping[str, int]) -> _Penalty:
         """Return the penalty of a midline that folds back at a keypoint, by the median bend there."""
         i, j, k = (index[name] for name in triple)
-        front, rear = self._place[:, j] - self._place[:, i], self._place[:, k] - self._place[:, j]
+        front_link, rear_link = self._place[:, j] - self._place[:, i], self._place[:, k] - self._place[:, j]
         axes = self._place.shape[-1]
-        dot = float(np.median(np.sum(front * rear, axis=-1))) + axes * float(self._noise[j]) ** 2
-        cross = np.linalg.norm(np.median(_cross(front, rear), axis=0))
+        dot = float(np.median(np.sum(front_link * rear_link, axis=-1))) + axes * float(np.square(self._noise[j]))
+        cross = np.linalg.norm(np.median(_cross(front_link, rear_link), axis=0))
         angle = float(np.arctan2(cross, dot))
-        return _Penalty(_limited((max(0.0, angle - _FOLD) / _FOLD_STEP) ** 2), "fold", triple)
+        return _Penalty(_limited_power((angle - _FOLD) / _FOLD_STEP), "fold", triple)
 
     def _foot(self, leg: str, index: Mapping[str, int]) -> list[_Penalty]:
         """Return the penalties of a foot: on the wrong side, near the wrong girdle, out of reach, or still."""
-        front, rear = self._line
-        f, p, q = index[leg], index[front], index[rear]
+        front_link, rear_link = self._line
+        f, p, q = index[leg], index[front_link], index[rear_link]
         axis = self._place[:, p, :2] - self._place[:, q, :2]
         axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
         offset = self._place[:, f, :2] - self._place[:, q, :2]
-        left = float(np.median(axis[:, 0] * offset[:, 1] - axis[:, 1] * offset[:, 0])) / self._scale
-        outward = left if leg.startswith("L") else -left
-        along = np.sum(axis * offset, axis=-1)
-        sweep = 1.4826 * float(np.median(np.abs(along - np.median(along))))
-        sweep = np.sqrt(max(0.0, sweep**2 - self._pair_noise[f, q] ** 2)) / self._scale
-        own, other = (p, q) if leg.endswith("F") else (q, p)
-        nearer = float(self._distance[f, own] - self._distance[f, other]) / self._scale
-        reach = float(self._distance[f, own]) / self._scale
-        still = min(_MAX_STILL_PENALTY, 4.0 * max(0.0, 1.0 - sweep / _MIN_SWEEP) ** 2)
-        side = max(0.0, 1.0 - outward / _MIN_OUTWARD) ** 2 if self._view == "top" else 0.0
+        left_offset = float(np.median(axis[:, 0] * offset[:, 1] - axis[:, 1] * offset[:, 0])) / self._scale
+        outward_offset = left_offset if leg.startswith("L") else -left_offset
+        axial_position = np.sum(axis * offset, axis=-1)
+        sweep = 1.4826 * float(np.median(np.abs(axial_position - np.median(axial_position))))
+        sweep = np.sqrt(max(0.0, np.square(sweep) - np.square(self._pair_noise[f, q]))) / self._scale
+        own_girdle, other_girdle = (p, q) if leg.endswith("F") else (q, p)
+        girdle_excess = float(self._distance[f, own_girdle] - self._distance[f, other_girdle]) / self._scale
+        reach = float(self._distance[f, own_girdle]) / self._scale
+        still_penalty = min(_MAX_STILL_PENALTY, 4.0 * max(0.0, 1.0 - sweep / _MIN_SWEEP) ** 2)
+        side_penalty = _limited_power(1.0 - outward_offset / _MIN_OUTWARD) if self._view == "top" else 0.0
         return [
-            _Penalty(_limited(side), "side", (leg,)),
-            _Penalty(_limited((max(0.0, nearer) / _GIRDLE_STEP) ** 2), "girdle", (leg,)),
-            _Penalty(_limited(max(0.0, reach / _REACH) ** 4), "reach", (leg,)),
-            _Penalty(still, "still", (leg,)),
+            _Penalty(side_penalty, "side", (leg,)),
+            _Penalty(_limited_power(girdle_excess / _GIRDLE_STEP), "girdle", (leg,)),
+            _Penalty(_limited_power(reach / _REACH, 4), "reach", (leg,)),
+            _Penalty(still_penalty, "still", (leg,)),
         ]
 
 
-def _limited(size: float) -> float:
-    return float(min(size, _MAX_PENALTY))
+def _limited_power(deviation: float, power: int = 2) -> float:
+    """Return a power of a deviation, 0 below it and at most ``_MAX_PENALTY``; no number is too large for it."""
+    return float(min(min(max(0.0, deviation), _MAX_PENALTY) ** power, _MAX_PENALTY))
 
 
 def _cross(first: np.ndarray, second: np.ndarray) -> Float[np.ndarray, "frame axis"]:

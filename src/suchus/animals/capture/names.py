@@ -63,9 +63,11 @@ def unused_points(points: Sequence[str]) -> dict[str, str | None]:
     suggestions: dict[str, str | None] = {}
     for name in points:
         if not is_keypoint(name):
-            nearest = nearest_name(name)
-            is_free = nearest is not None and nearest not in points and nearest not in suggestions.values()
-            suggestions[name] = nearest if is_free else None
+            keypoint_name = nearest_name(name)
+            is_free = (
+                keypoint_name is not None and keypoint_name not in points and keypoint_name not in suggestions.values()
+            )
+            suggestions[name] = keypoint_name if is_free else None
     return suggestions
 
 
@@ -74,9 +76,11 @@ def unused_text(points: Sequence[str]) -> str:
     suggestions = unused_points(points)
     if not suggestions:
         return ""
-    renamed = " ".join(f"{name}={nearest}" for name, nearest in suggestions.items() if nearest)
+    names_option = " ".join(f"{name}={keypoint_name}" for name, keypoint_name in suggestions.items() if keypoint_name)
     remedy = (
-        f"give --names {renamed}, if that is what they are" if renamed else "name with --names THEIRS=OURS any of use"
+        f"give --names {names_option}, if that is what they are"
+        if names_option
+        else "name with --names THEIRS=OURS any of use"
     )
     return f"{', '.join(suggestions)} {'is' if len(suggestions) == 1 else 'are'} not used: {remedy}"
 
@@ -88,14 +92,14 @@ def check_feet(tracks: Tracks) -> None:
         UnusableTracks: it names them, and the option that gives them our names.
     """
     suggestions = unused_points(tracks.points)
-    feet = {name: nearest for name, nearest in suggestions.items() if nearest in LEGS}
+    feet = {name: keypoint_name for name, keypoint_name in suggestions.items() if keypoint_name in LEGS}
     if feet and not tracks.legs:
-        renamed = " ".join(f"{name}={nearest}" for name, nearest in feet.items())
-        others = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))
+        names_option = " ".join(f"{name}={keypoint_name}" for name, keypoint_name in feet.items())
+        other_names = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))
         raise UnusableTracks(
             f"in {tracks.source} no keypoint is called LF, RF, LH or RH, but {' and '.join(feet)} "
-            f"seem{'s' * (len(feet) == 1)} to be feet; give --names {renamed}, or, to measure without feet, "
-            f"--names {others}."
+            f"seem{'s' * (len(feet) == 1)} to be feet; give --names {names_option}, or, to measure without feet, "
+            f"--names {other_names}."
         )
 
 

@@ -48,13 +48,16 @@ def longest_bout(tracks: Tracks) -> Bout:
     walking = np.flatnonzero(activity[start:end] > _MIN_WALK * usual_activity)
     if not len(walking):
         return Bout(tracks, ())
-    first, last = start + int(walking[0]) * (start > 0), (start + int(walking[-1]) if end < len(activity) else end - 1)
-    stands = ", ".join(f"{tracks.time[a]:.2f} to {tracks.time[b - 1]:.2f} s" for a, b in pauses)
-    note = (
-        f"the animal stands from {stands}: measured is its longest walk, from {tracks.time[first]:.2f} to "
-        f"{tracks.time[last]:.2f} s; --start and --end choose another"
+    first_frame, last_frame = (
+        start + int(walking[0]) * (start > 0),
+        (start + int(walking[-1]) if end < len(activity) else end - 1),
     )
-    return Bout(tracks.between(float(tracks.time[first]), float(tracks.time[last])), (note,))
+    pause_text = ", ".join(f"{tracks.time[a]:.2f} to {tracks.time[b - 1]:.2f} s" for a, b in pauses)
+    note = (
+        f"the animal stands from {pause_text}: measured is its longest walk, from {tracks.time[first_frame]:.2f} to "
+        f"{tracks.time[last_frame]:.2f} s; --start and --end choose another"
+    )
+    return Bout(tracks.between(float(tracks.time[first_frame]), float(tracks.time[last_frame])), (note,))
 
 
 def _activity(tracks: Tracks) -> Float[np.ndarray, " frame"] | None:
@@ -68,14 +71,22 @@ def _activity(tracks: Tracks) -> Float[np.ndarray, " frame"] | None:
         series = tracks.position[:, *index]
         is_seen = np.isfinite(series)
         if is_seen.mean() > 0.5:
-            filled = np.interp(tracks.time, tracks.time[is_seen], series[is_seen])
-            padded = np.pad(filled, half // 2, mode="edge")
-            place[:, *index] = np.convolve(padded, np.ones(2 * (half // 2) + 1), mode="valid") / (2 * (half // 2) + 1)
+            filled_series = np.interp(tracks.time, tracks.time[is_seen], series[is_seen])
+            padded_series = np.pad(filled_series, half // 2, mode="edge")
+            place[:, *index] = np.convolve(padded_series, np.ones(2 * (half // 2) + 1), mode="valid") / (
+                2 * (half // 2) + 1
+            )
     place = place[:, np.isfinite(place).all(axis=(0, 2))]
     if not place.shape[1]:
         return None
-    after, before = np.minimum(np.arange(frames) + half, frames - 1), np.maximum(np.arange(frames) - half, 0)
-    speed = np.linalg.norm(place[after] - place[before], axis=-1) / (tracks.time[after] - tracks.time[before])[:, None]
+    next_frames, previous_frames = (
+        np.minimum(np.arange(frames) + half, frames - 1),
+        np.maximum(np.arange(frames) - half, 0),
+    )
+    speed = (
+        np.linalg.norm(place[next_frames] - place[previous_frames], axis=-1)
+        / (tracks.time[next_frames] - tracks.time[previous_frames])[:, None]
+    )
     return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1))
 
 

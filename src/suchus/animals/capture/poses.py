@@ -111,11 +111,13 @@ def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tup
     body = rows[len(header) :]
     width = len(header["coords"])
     _check_rows(body, width, name)
-    first = next(i for i, cell in enumerate(header["coords"]) if cell in ("x", "y", "z", "likelihood"))
+    first_column = next(i for i, cell in enumerate(header["coords"]) if cell in ("x", "y", "z", "likelihood"))
     owners = header.get("individuals", [""] * width)
-    owner = _choice(list(dict.fromkeys(owners[first:])), individual, name)
-    columns = {(header["bodyparts"][j], header["coords"][j]): j for j in range(first, width) if owners[j] == owner}
-    frame = np.array([_frame_number(row[first - 1], i, name) for i, row in enumerate(body, 1)])
+    owner = _choice(list(dict.fromkeys(owners[first_column:])), individual, name)
+    columns = {
+        (header["bodyparts"][j], header["coords"][j]): j for j in range(first_column, width) if owners[j] == owner
+    }
+    frame = np.array([_frame_number(row[first_column - 1], i, name) for i, row in enumerate(body, 1)])
     return frame, _poses(body, columns, "likelihood", name)
 
 
@@ -133,11 +135,11 @@ def _sleap(rows: list[list[str]], individual: str | None, name: str) -> tuple[np
     frame = np.array([_number(row[header.index(_SLEAP_FRAME)], _SLEAP_FRAME, i, name) for i, row in enumerate(body, 1)])
     order = np.argsort(frame, kind="stable")
     frame = frame[order]
-    twice = np.flatnonzero(np.diff(frame) == 0)
-    if len(twice):
+    repeated_rows = np.flatnonzero(np.diff(frame) == 0)
+    if len(repeated_rows):
         raise UnusableTracks(
             f"{name} holds two instances{f' of {track}' if track else ' without a track'} in frame "
-            f"{frame[twice[0]]:.0f}; one is needed: track the animals in SLEAP, and export the analysis again."
+            f"{frame[repeated_rows[0]]:.0f}; one is needed: track the animals in SLEAP, and export the analysis again."
         )
     columns = {}
     for j, cell in enumerate(header):

@@ -84,8 +84,8 @@ def per_stride(tracks: Tracks, clock: Clock, feet: Mapping[str, FootContact], st
 
 def _extrapolated(clock: Clock, starts: Float[np.ndarray, " stride"]) -> Float[np.ndarray, " stride"]:
     """Return how far the ends of strides lie before the first mark of the clock and after the last one [cycle]."""
-    before, after = clock.cycles[0] - starts, starts + 1.0 - clock.cycles[-1]
-    return np.asarray(np.maximum(before, 0.0) + np.maximum(after, 0.0))
+    early_cycles, late_cycles = clock.cycles[0] - starts, starts + 1.0 - clock.cycles[-1]
+    return np.asarray(np.maximum(early_cycles, 0.0) + np.maximum(late_cycles, 0.0))
 
 
 def _jitter(feet: Mapping[str, FootContact]) -> float:
@@ -141,11 +141,11 @@ def _straightened(
     is_seen = np.isfinite(place).all(axis=-1)
     if abs(turning_rate) * (time[-1] - time[0]) < _MIN_TURN or is_seen.sum() < 2:
         return place
-    filled = np.stack([np.interp(time, time[is_seen], row[is_seen]) for row in place.T], axis=-1)
-    steps, angle = np.diff(filled, axis=0), -turning_rate * ((time[1:] + time[:-1]) / 2 - (time[0] + time[-1]) / 2)
+    filled_path = np.stack([np.interp(time, time[is_seen], row[is_seen]) for row in place.T], axis=-1)
+    steps, angle = np.diff(filled_path, axis=0), -turning_rate * ((time[1:] + time[:-1]) / 2 - (time[0] + time[-1]) / 2)
     c, s = np.cos(angle), np.sin(angle)
-    turned = np.stack([c * steps[:, 0] - s * steps[:, 1], s * steps[:, 0] + c * steps[:, 1]], axis=-1)
-    path = np.concatenate([np.zeros((1, 2)), np.cumsum(turned, axis=0)]) + filled[0]
+    turned_steps = np.stack([c * steps[:, 0] - s * steps[:, 1], s * steps[:, 0] + c * steps[:, 1]], axis=-1)
+    path = np.concatenate([np.zeros((1, 2)), np.cumsum(turned_steps, axis=0)]) + filled_path[0]
     return np.where(is_seen[:, None], path, np.nan)
 
 

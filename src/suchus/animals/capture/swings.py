@@ -402,9 +402,9 @@ class Clock(NamedTuple):
 
         It is that of the nearest cycle between marks, and its trend over the three nearest.
         """
-        first, last = self.cycles[[0, -1]]
-        first_periods = [self._periods(first + i, first + i + 1.0) for i in range(3)]
-        last_periods = [self._periods(last - i - 1.0, last - i) for i in range(3)]
+        first_cycle, last_cycle = self.cycles[[0, -1]]
+        first_periods = [self._periods(first_cycle + i, first_cycle + i + 1.0) for i in range(3)]
+        last_periods = [self._periods(last_cycle - i - 1.0, last_cycle - i) for i in range(3)]
         return _with_trend(*first_periods), _with_trend(*last_periods)
 
     def _periods(self, start: float, end: float) -> float:
@@ -416,18 +416,20 @@ class Clock(NamedTuple):
         return float((last_time - first_time) / (end - start))
 
 
-def _with_trend(nearest: float, second: float, third: float) -> float:
+def _with_trend(nearest_period: float, second_period: float, third_period: float) -> float:
     """Return the period beyond the end of the marks from those of the nearest cycles.
 
     Only a trend of the same sense in all of them goes on; a small difference, or one that turns, is noise.
     """
-    differences = np.array([nearest - second, second - third])
+    differences = np.array([nearest_period - second_period, second_period - third_period])
     differences = differences[np.isfinite(differences)]
     if not len(differences) or np.ptp(np.sign(differences)) > 0:
-        return nearest
+        return nearest_period
     difference = float(differences[0])
-    weight = difference**2 / (difference**2 + (_TREND_NOISE * nearest) ** 2)
-    return float(np.clip(nearest + _TREND_REACH * weight * difference, 0.7 * nearest, 1.4 * nearest))
+    weight = difference**2 / (difference**2 + (_TREND_NOISE * nearest_period) ** 2)
+    return float(
+        np.clip(nearest_period + _TREND_REACH * weight * difference, 0.7 * nearest_period, 1.4 * nearest_period)
+    )
 
 
 def walk_clock(feet: Mapping[str, SwingMidpoints], period: float) -> Clock:

@@ -34,6 +34,7 @@ _COLOURS = {
     "contradicted": "red",
     "undecided": "magenta",
     "models disagree": "magenta",
+    "depends on the reading": "magenta",
     "not testable": "dim",
     "by construction": "cyan",
     "fitted": "cyan",

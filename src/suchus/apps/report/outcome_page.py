@@ -27,6 +27,7 @@ MARKS = {
     "contradicted": "✕",
     "undecided": "◑",
     "models disagree": "≠",
+    "depends on the reading": "±",
     "not testable": "○",
     "fitted": "◇",
     "by construction": "□",

@@ -35,7 +35,7 @@ ANIMALS = (
         "number of living species",
         26,
         "There are 26 recognised species of crocodilians.",
-        "there are currently 26 recognized crocodile species",
+        "[There] are currently 26 recognized crocodile species",
     ),
     Claim(
         key="largest_length",
@@ -45,7 +45,7 @@ ANIMALS = (
         unit="m",
         rounding=0.5,  # printed as "approximately 4 meters": half of the last digit
         sense="The largest crocodile is the Nile crocodile, about 4 m long.",
-        quote="the African Nile Robot, the largest among them, ... approximately 4 meters",
+        quote="the African Nile Crocodile, the largest among them, ... approximately 4 meters",
     ),
     Claim(
         key="smallest_length",

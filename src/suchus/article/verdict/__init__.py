@@ -12,12 +12,14 @@ from suchus.article.verdict.judging import (
     word_of,
 )
 from suchus.article.verdict.rule import (
+    PRINTED_DISPLACEMENT,
     Clause,
     ControlGroup,
     Kind,
     Reading,
     Rule,
     Rung,
+    SmallestEffect,
     Variation,
     comparison_word,
     interval,
@@ -26,6 +28,7 @@ from suchus.article.verdict.rule import (
 )
 
 __all__ = [
+    "PRINTED_DISPLACEMENT",
     "SHARES",
     "SPARSE_SHARES",
     "Clause",
@@ -36,6 +39,7 @@ __all__ = [
     "Rule",
     "Rung",
     "Share",
+    "SmallestEffect",
     "SparseShare",
     "Variation",
     "Verdict",

@@ -119,19 +119,21 @@ SPARSE_SHARES: Mapping[str, SparseShare] = MappingProxyType(
 
 
 Word = Literal[
-    "reproduced", "same sense", "contradicted", "undecided", "models disagree", "not testable", "by construction",
-    "fitted",
+    "reproduced", "same sense", "contradicted", "undecided", "models disagree", "depends on the reading",
+    "not testable", "by construction", "fitted",
 ]  # fmt: skip
 """``reproduced``: it came out, and the middle of ours is the printed number as rounded. ``same sense``: another number,
 but the statement holds; or the robot does what is said of animals. ``contradicted``: the statement does not hold.
-``undecided``: an interval covers both sides of a bound, and nothing else fails. ``models disagree``: models that can
-carry the claim say different words. ``not testable``: nothing was measured that could decide, or the control group
-does not do what the claim needs. ``by construction``:
-an input, a count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was
-chosen so that it comes out.
+``undecided``: an interval covers both sides of a bound or is unknown, and nothing else fails. ``models disagree``:
+models that can carry the claim say different words. ``depends on the reading``: the article's words have several
+meanings, and the statement holds by one of them and not by another. ``not testable``: nothing was measured that could
+decide, or the control group does not do what the claim needs. ``by construction``: an input, a count or a commanded
+shape that is read back, an identity of formulas, or a consequence of symmetry. ``fitted``: a free number was chosen so
+that it comes out.
 """
 WORDS: tuple[Word, ...] = get_args(Word)
 _HOLDS_BY_WORD: Mapping[str, bool] = MappingProxyType({"reproduced": True, "same sense": True, "contradicted": False})
+_HOLDS_BY_READING: Mapping[str, bool] = MappingProxyType({**_HOLDS_BY_WORD, "fitted": True})
 """Whether the statement held, by the words that say so of a run."""
 Examples = Mapping[str, Sequence[tuple[Mapping[str, float], Word]]]
 """By claim: measures, and the word that its rule must say of them, on both sides of everything that it looks at."""
@@ -209,27 +211,39 @@ def judge(
     if rule.claim not in claims:
         raise UnknownName("claim", rule.claim, claims)
     claim = claims[rule.claim]
-    missing = sorted((rule.needs | rule.named_in_reason) - set(measures))
+    needed = rule.needs.union(rule.named_in_reason, *(other.needs for other in rule.by_others))
+    missing = sorted(needed - set(measures))
     if missing:
         raise IncompatibleRecord(
             f"the verdict on {rule.claim} needs {', '.join(missing)}, which {rule.experiment} did not measure."
         )
     model_voices = ladder.voices(rule, measures, unable)
     value, lower_bound, upper_bound = _value(rule, measures, model_voices), None, None
-    reason = " ".join(text for text in (rule.reason(measures), rule.unable(measures)) if text)
+    deciding = "" if model_voices else rule.deciding(measures)
+    words = _words_by_reading(rule, claim, measures, model_voices)
+    reason_parts = (
+        rule.reason(measures),
+        deciding,
+        rule.unable(measures),
+        rule.unknown(measures),
+        _reading_sentence(words, measures),
+    )
+    reason = " ".join(text for text in reason_parts if text)
     if model_voices:
         _, min_value, max_value = ladder.spread(model_voices)
         lower_bound, upper_bound = (min_value, max_value) if isfinite(value) else (None, None)
         reason = f"{reason} {ladder.sentence(model_voices, rule.form)}"
     elif rule.measure in rule.spread and isfinite(value):
-        lower_bound, upper_bound = interval(rule.measure, measures, rule.spread)
+        lower_bound, upper_bound = (
+            end if isfinite(end) else None for end in interval(rule.measure, measures, rule.spread)
+        )
     return Verdict(
         claim=claim,
         rule=rule,
         measured=value if isfinite(value) else None,
         low=lower_bound,
         high=upper_bound,
-        verdict=_word(rule, claim, value, measures, model_voices),
+        verdict=_common_word([word for _, word in words]),
         why=reason,
         share=_of_rule(rule, shares.get(rule.claim)),
         voices=model_voices,
@@ -265,6 +279,34 @@ def _value(rule: Rule, measures: Mapping[str, float], model_voices: Sequence[lad
 def _of_rule(rule: Rule, row: _Row | None) -> _Row | None:
     """Return a row if it was made with this rule, otherwise None."""
     return None if row is None or row.rule not in ("", rule.asked) else row
+
+
+def _words_by_reading(
+    rule: Rule, claim: Claim, measures: Mapping[str, float], model_voices: Sequence[ladder.Voice]
+) -> list[tuple[Rule, Word]]:
+    """Return the rule in each meaning of the article's words with its verdict's word, that of the rule itself first."""
+    own_word = _word(rule, claim, _value(rule, measures, model_voices), measures, model_voices)
+    return [(rule, own_word)] + [
+        (other, _word(other, claim, float(measures[other.measure]), measures, ())) for other in rule.by_others
+    ]
+
+
+def _common_word(words: Sequence[Word]) -> Word:
+    """Return the first word, or ``depends on the reading`` where the statement holds by one word and not by another."""
+    answers = {_HOLDS_BY_READING[word] for word in words if word in _HOLDS_BY_READING}
+    return "depends on the reading" if len(answers) > 1 else words[0]
+
+
+def _reading_sentence(words: Sequence[tuple[Rule, Word]], measures: Mapping[str, float]) -> str:
+    """Return a sentence with the word and the number of each meaning of the article's words; empty if there is one."""
+    if len(words) < 2:
+        return ""
+    texts = []
+    for rule, word in words:
+        ends = interval(rule.measure, measures, rule.spread)
+        range_text = f", {ends[0]:.2g} to {ends[1]:.2g}" if rule.measure in rule.spread else ""
+        texts.append(f"{rule.interpretation}: {word} ({measures[rule.measure]:.2g}{range_text})")
+    return f"By reading: {'; '.join(texts)}."
 
 
 def _word(

@@ -5,13 +5,15 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 
 import operator
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
-from math import degrees, isfinite
+from math import degrees, isfinite, nan
 from string import Formatter
 from types import MappingProxyType
 from typing import Any, Literal
 
+MIN_REPEATS = 6
+"""Least number of repeats with which a median has a 95 % interval [-]; ``core.intervals.min_median_count`` gives it."""
 _UNITS = {"mm": 1e3, "g": 1e3, "ms": 1e3, "MPa": 1e-6}
 
 
@@ -66,8 +68,9 @@ Kind = Literal["measured", "construction", "fitted", "animals"]
 """What a claim's number or statement rests on.
 
 ``measured``: it came out of a run or a calculation and could have come out otherwise. ``construction``: an input, a
-count or a commanded shape that is read back, or an identity of formulas. ``fitted``: a free number was chosen so that
-it comes out. ``animals``: the article speaks of animals, which a robot can resemble but neither confirm nor contradict.
+count or a commanded shape that is read back, an identity of formulas, or a consequence of symmetry. ``fitted``: a
+free number was chosen so that it comes out. ``animals``: the article speaks of animals, which a robot can resemble but
+neither confirm nor contradict.
 """
 DEFAULT_SPREAD_OF = "robots built of the design, with the errors of their servos, masses and friction"
 """What the intervals of most rules are of, for people."""
@@ -75,6 +78,22 @@ Relation = Literal["<", "<=", ">", ">="]
 _RELATIONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
     {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmallestEffect:
+    """Smallest difference from a bound that matters; a smaller one counts as none, however surely it is there."""
+
+    size: float
+    """In the unit of the measure, above 0."""
+    why: str
+    """Reason for the size, one that does not come from the result."""
+
+
+PRINTED_DISPLACEMENT = SmallestEffect(
+    size=0.005, why="the article prints displacements in steps of 10 mm, and less than 5 mm prints as none"
+)
+"""Smallest displacement or difference of displacements that matters [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,27 +108,46 @@ class Clause:
     """A number in the measure's unit, or the name of another measure."""
     why: str
     """Reason for the bound, one that was there before the result."""
+    smallest_effect: SmallestEffect | None = None
+    """By how much the measure must be beyond the bound; None: by anything."""
 
     def holds(self, measures: Mapping[str, float], spread: Collection[str] = ()) -> bool | None:
         """Return whether the comparison is true; None where intervals cover both answers.
 
-        A number that is not finite makes it false.
+        A number that is not finite makes it false. An end of an interval that is not finite is unknown, and then the
+        comparison is undecided.
 
         Args:
             measures: measures by name; those of ``spread`` with their intervals.
             spread: names of the measures that have an interval.
         """
+        names = [self.measure, *([self.bound] if isinstance(self.bound, str) else [])]
+        if not all(isfinite(measures[name]) for name in names):
+            return False
         value = interval(self.measure, measures, spread)
         bound = interval(self.bound, measures, spread) if isinstance(self.bound, str) else (self.bound, self.bound)
         if not all(map(isfinite, (*value, *bound))):
-            return False
-        relation = _RELATIONS[self.relation]
-        answers = {relation(value_end, bound_end) for value_end in value for bound_end in bound}
+            return None
+        relation, excess = _RELATIONS[self.relation], self._signed_effect
+        answers = {relation(value_end, bound_end + excess) for value_end in value for bound_end in bound}
         return answers.pop() if len(answers) == 1 else None
 
-    def __str__(self) -> str:
+    @property
+    def comparison(self) -> str:
+        """The comparison as text, with the smallest effect: ``gain > 0 by at least 0.005``."""
         bound = self.bound if isinstance(self.bound, str) else f"{self.bound:g}"
-        return f"{self.measure} {self.relation} {bound}: {self.why}"
+        effect = f" by at least {self.smallest_effect.size:g}" if self.smallest_effect else ""
+        return f"{self.measure} {self.relation} {bound}{effect}"
+
+    @property
+    def _signed_effect(self) -> float:
+        """Smallest effect, positive where the measure must be above the bound."""
+        size = self.smallest_effect.size if self.smallest_effect else 0.0
+        return size if self.relation.startswith(">") else -size
+
+    def __str__(self) -> str:
+        effect_reason = f" (the least that matters: {self.smallest_effect.why})" if self.smallest_effect else ""
+        return f"{self.comparison}: {self.why}{effect_reason}"
 
 
 def interval(name: str, measures: Mapping[str, float], spread: Collection[str]) -> tuple[float, float]:
@@ -150,6 +188,20 @@ class Rung:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Interpretation:
+    """One of several meanings of the article's words, by which the same clauses are asked of other measures."""
+
+    name: str
+    """Its name, for people: ``locked, in one leg``."""
+    measures: tuple[str, str]
+    """Part of the names of the rule's measures, and what stands in its place in the names of those that are asked."""
+
+    def measure(self, name: str) -> str:
+        """Return the name of the measure that is asked in the place of one of the rule's."""
+        return name.replace(*self.measures)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
     """When a claim counts as what; it is applied by ``judge``."""
 
@@ -176,6 +228,10 @@ class Rule:
     settled: float = 0.1
     """Greatest spread of a rung's halves and starting sides, over the size of what is measured, with which it has a
     word: ``MEASURE_NAME_apart`` [-]."""
+    interpretation: str = ""
+    """Name of the meaning of the article's words that the rule's own measures have; empty where there is one alone."""
+    others: tuple[Interpretation, ...] = ()
+    """Other meanings; where the statement holds by one and not by another, the word is ``depends on the reading``."""
     form: str = ".3g"
     """How the rungs' numbers are written, see ``Reading``."""
     unswept: str = ""
@@ -185,7 +241,9 @@ class Rule:
     def asked(self) -> str:
         """Hash of the rule's inputs. A stored fraction of designs is valid only for the rule with the same hash."""
         clauses = [
-            f"{clause.measure} {clause.relation} {clause.bound}" for clause in (*self.holds, *self._control_clauses)
+            f"{clause.measure} {clause.relation} {clause.bound}"
+            + (f" by {clause.smallest_effect.size}" if clause.smallest_effect else "")
+            for clause in (*self.holds, *self._control_clauses)
         ]
         rungs = [f"{rung.name} {rung.carries}" for rung in self.rungs]
         text = "\n".join([self.experiment, self.measure, *clauses, *rungs, f"{self.settled}" * bool(rungs)])
@@ -202,6 +260,31 @@ class Rule:
             spread = {f"{name}_{rung}{end}" for name in measures for rung in carrying for end in ends}
             return spread | {f"{name}_{rung}" for name in bounds for rung in carrying}
         return measures | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
+
+    @property
+    def by_others(self) -> tuple["Rule", ...]:
+        """The rule in each other meaning of the article's words, with the same clauses."""
+        return tuple(self._interpreted(other) for other in self.others)
+
+    def _interpreted(self, other: Interpretation) -> "Rule":
+        """Return the rule in another meaning of the article's words."""
+        clauses = tuple(
+            replace(
+                clause,
+                measure=other.measure(clause.measure),
+                bound=other.measure(clause.bound) if isinstance(clause.bound, str) else clause.bound,
+            )
+            for clause in self.holds
+        )
+        return replace(
+            self,
+            measure=other.measure(self.measure),
+            holds=clauses,
+            spread=tuple(map(other.measure, self.spread)),
+            interpretation=other.name,
+            others=(),
+            why="",
+        )
 
     @property
     def named_in_reason(self) -> set[str]:
@@ -227,6 +310,39 @@ class Rule:
         """Return a sentence that names the properties that the control group lacks; empty if it has all of them."""
         lacking = [str(clause) for clause in self._control_clauses if clause.holds(measures, self.spread) is not True]
         return f"The control group, {self.control.group}, lacks {listed(lacking)}." if self.control and lacking else ""
+
+    def deciding(self, measures: Mapping[str, float]) -> str:
+        """Return a sentence with the clauses that do not hold and are of another measure than the one that is shown.
+
+        It is empty where the statement holds, or where the measure that is shown decides.
+        """
+        failing = [clause for clause in self.holds if clause.holds(measures, self.spread) is False]
+        open_clauses = [clause for clause in self.holds if clause.holds(measures, self.spread) is None]
+        decisive = failing or open_clauses
+        if not decisive or self.measure in [clause.measure for clause in decisive]:
+            return ""
+        texts = [f"{clause.comparison} ({clause.measure}: {self._written(clause, measures)})" for clause in decisive]
+        return f"{'What fails is' if failing else 'Undecided is'} {listed(texts)}."
+
+    def _written(self, clause: Clause, measures: Mapping[str, float]) -> str:
+        """Return the value of a clause's measure, with its interval in brackets where it has one."""
+        ends = interval(clause.measure, measures, self.spread)
+        text = f"{measures[clause.measure]:.3g}"
+        return f"{text}, {ends[0]:.3g} to {ends[1]:.3g}" if clause.measure in self.spread else text
+
+    def unknown(self, measures: Mapping[str, float]) -> str:
+        """Return a sentence that names the measures whose intervals are unknown; empty if all are known."""
+        names = [
+            name
+            for name in self.spread
+            if isfinite(measures.get(name, nan)) and not all(map(isfinite, interval(name, measures, self.spread)))
+        ]
+        if not names:
+            return ""
+        return (
+            f"The 95 % interval of {listed(names)} is unknown, since there are too few repeats; that of a median needs "
+            f"{MIN_REPEATS} at least."
+        )
 
     @property
     def _control_clauses(self) -> tuple[Clause, ...]:

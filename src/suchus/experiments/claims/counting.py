@@ -12,9 +12,9 @@ from suchus.experiments.claims.table import RULES
 
 Standing = Literal["evidence", "by construction", "fitted", "animals", "said twice", "not testable"]
 """What a verdict is worth. ``evidence``: it could have come out either way. ``by construction``: an input that is read
-back, or an identity of formulas. ``fitted``: a free number was chosen for it, whether its result came out or not.
-``animals``: said of animals, which a robot cannot contradict. ``said twice``: the same comparisons of the same measure
-decided an earlier claim. ``not testable``: nothing was measured that could decide.
+back, an identity of formulas, or a consequence of symmetry. ``fitted``: a free number was chosen for it, whether its
+result came out or not. ``animals``: said of animals, which a robot cannot contradict. ``said twice``: the same
+comparisons of the same measure decided an earlier claim. ``not testable``: nothing was measured that could decide.
 """
 STANDINGS: tuple[Standing, ...] = get_args(Standing)
 
@@ -49,7 +49,7 @@ class EvidenceCount:
         text *= self.claims > 0
         wrong_count = standing_counts["by construction"] - agree["by construction"]
         labels = {
-            "by construction": f"read back or identities of formulas ({wrong_count} not so as printed)",
+            "by construction": f"read back, or consequences of formulas or symmetry ({wrong_count} do not hold)",
             "fitted": f"fitted ({agree['fitted']} came out)",
             "animals": f"said of animals (the robot does the same in {agree['animals']})",
             "said twice": "said twice",
@@ -140,5 +140,5 @@ def _repeats_earlier_rule(rule: Rule, rules: Mapping[str, Rule]) -> bool:
 
 
 def _comparison_key(rule: Rule) -> tuple[object, ...]:
-    clauses = sorted((clause.measure, clause.relation, str(clause.bound)) for clause in rule.holds)
+    clauses = sorted(clause.comparison for clause in rule.holds)
     return rule.experiment, rule.measure, clauses

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
+from suchus.core.intervals import fraction_interval
 from suchus.experiments.study.claim_measures import judge_samples, measures_of, swept_rules
 from suchus.sim.metrics.decisive import border, rank_correlation
 
@@ -127,10 +128,7 @@ def _explained_fraction(parameter: np.ndarray, ranks: np.ndarray, weights: np.nd
 
 def share_interval(true: int, count: int) -> tuple[float, float]:
     """Return the 95 % interval of a share, after Wilson [-]."""
-    if count == 0:
-        return float("nan"), float("nan")
-    interval = stats.binomtest(true, count).proportion_ci(_CONFIDENCE, method="wilson")
-    return float(interval.low), float(interval.high)
+    return fraction_interval(true, count, method="wilson", confidence=_CONFIDENCE)
 
 
 class Agreement(NamedTuple):

@@ -6,6 +6,7 @@
 from suchus.sim.metrics.bends import (
     bend_swings,
     lateral_bend,
+    smaller_swing,
     spine_amplitude,
     spine_sine_share,
     spine_swings,
@@ -126,6 +127,7 @@ __all__ = [
     "sensed_phase",
     "settled_mean",
     "slip",
+    "smaller_swing",
     "speed",
     "speed_chatter",
     "spine_amplitude",

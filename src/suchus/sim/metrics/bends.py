@@ -54,7 +54,14 @@ def tail_amplitude(record: xr.Dataset, start: float = START, end: float | None =
 
 def tail_swing_least(record: xr.Dataset, start: float = START, end: float | None = None) -> xr.DataArray:
     """Return how far the tail swings to the side that it swings to less, negative if it never gets there [rad]."""
-    bend = _window(record, "tail", start, end)
+    return smaller_swing(_window(record, "tail", start, end))
+
+
+def smaller_swing(bend: xr.DataArray) -> xr.DataArray:
+    """Return how far a bend over ``time`` swings to the side that it swings to less, negative if it never gets there.
+
+    The unit is that of the bend.
+    """
     right_swing, left_swing = bend.max("time"), -bend.min("time")
     return right_swing.where(right_swing < left_swing, left_swing)
 

@@ -1,7 +1,14 @@
 """When the claims on the heights that are reached count as what (section IV.D, Figs 22 to 24)."""
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, Rule, Variation, measure_with_interval
+from suchus.article.verdict.rule import (
+    DEFAULT_SPREAD_OF,
+    PRINTED_DISPLACEMENT,
+    Clause,
+    Rule,
+    Variation,
+    measure_with_interval,
+)
 
 RULES = (
     Rule(
@@ -15,7 +22,7 @@ RULES = (
                 "hip_height_plausible",
                 "the robot can reach the printed height when it crawls: with hips no higher than a sprawled crawl has",
             ),
-            Clause("distance_high_crawl", ">", 0.0, "a crawl that gets forward"),
+            Clause("distance_high_crawl", ">", 0.0, "a crawl that gets forward", PRINTED_DISPLACEMENT),
         ),
         spread=("reach_crawl", "hips_at_printed_height"),
         of=DEFAULT_SPREAD_OF,
@@ -136,8 +143,8 @@ EXAMPLES: Examples = {
         (_CRAWL | measure_with_interval("hips_at_printed_height", 0.119, 0.1201), "undecided"),
         (_CRAWL | measure_with_interval("hips_at_printed_height", 0.1199, 0.121), "undecided"),
         (_CRAWL | measure_with_interval("hips_at_printed_height", 0.1201, 0.121), "contradicted"),
-        (_CRAWL | {"distance_high_crawl": 0.01}, "reproduced"),
-        (_CRAWL | {"distance_high_crawl": -0.01}, "contradicted"),
+        (_CRAWL | {"distance_high_crawl": 0.0051}, "reproduced"),
+        (_CRAWL | {"distance_high_crawl": 0.0049}, "contradicted"),
     ],
     "height_standing": [
         (_STAND, "fitted"),

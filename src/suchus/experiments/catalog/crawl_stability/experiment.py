@@ -156,6 +156,7 @@ class CrawlStability(TwoGroups):
             if {arm, reference} <= set(values.condition.values):
                 change = values.sel(condition=arm, drop=True) / values.sel(condition=reference, drop=True) - 1
                 measures |= estimated(name, change, "-")
+        measures |= _designed_changes(record)
         measures |= {
             "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
             "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
@@ -219,6 +220,23 @@ def _snapshot_quantities() -> dict[str, str]:
     return crawl_units | {
         f"{name}_{1000 * time:.0f}_ms": unit for time in SNAPSHOT_TIMES for name, unit in _SNAPSHOT_UNITS.items()
     }
+
+
+def _designed_changes(record: xr.Dataset) -> Measures:
+    """Return the changes of the peak-to-peak height of the robot exactly as designed, as ``NAME_designed``.
+
+    Random errors of robots as built enlarge a peak-to-peak value on average, so the design may lie outside of the
+    interval of these robots.
+    """
+    labels = [str(label) for label in record.condition.values]
+    heights = dict(zip(labels, height_peak_to_peak(record).values, strict=True))
+    return Measures(
+        {
+            f"{name}_designed": Measure(float(heights[arm] / heights[reference] - 1.0), "-")
+            for name, quantity, arm, reference in _CHANGES
+            if quantity == "com_height_pp" and {arm, reference} <= heights.keys()
+        }
+    )
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:

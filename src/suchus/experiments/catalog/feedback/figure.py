@@ -86,9 +86,9 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
             ax.set_ylabel("phase error [cycle]")
     return captioned(
         figure,
-        f"How far the limbs are from the gait, from {error.sizes['start']} random starts under each law; the black "
-        "line is the median, the grey band counts as coordinated. Noisy feet: 30 % noise on every load, spine and tail "
-        "rules on.",
+        "How far the limbs are from the gait, from random starts under each law, with more starts where the fraction "
+        "that converges is judged; the black line is the median, the grey band counts as coordinated. Noisy feet: 30 % "
+        "noise on every load, spine and tail rules on.",
     )
 
 

@@ -3,7 +3,14 @@
 from math import nan
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, ControlGroup, Rule, Variation, measure_with_interval
+from suchus.article.verdict.rule import (
+    PRINTED_DISPLACEMENT,
+    Clause,
+    ControlGroup,
+    Rule,
+    Variation,
+    measure_with_interval,
+)
 
 _UNDISTURBED_REASON = "a rule must not spoil a walk that is right: 3 % and no more"
 _STARTS = "random starts, each of a robot of its own that is built of the design"
@@ -44,7 +51,7 @@ RULES = (
         experiment="feedback",
         measure="way_gain_shared",
         holds=(
-            Clause("way_gain_shared", ">", 0.0, "a coordinated body gets farther in a cycle"),
+            Clause("way_gain_shared", ">", 0.0, "a coordinated body gets farther in a cycle", PRINTED_DISPLACEMENT),
             Clause("way_shared_least", ">", "way_isolated_least", "from the worst start too"),
         ),
         control=ControlGroup(
@@ -122,9 +129,9 @@ EXAMPLES: Examples = {
     ],
     "shared_variables": [
         (_RULES_EXAMPLE, "reproduced"),
-        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", 0.001, 0.1), "reproduced"),
-        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", -0.001, 0.1), "undecided"),
-        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", -0.1, -0.001), "contradicted"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", 0.0051, 0.1), "reproduced"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", 0.0049, 0.1), "undecided"),
+        (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", -0.1, 0.0049), "contradicted"),
         (_RULES_EXAMPLE | {"way_isolated_least": 0.327}, "reproduced"),
         (_RULES_EXAMPLE | {"way_isolated_least": 0.333}, "contradicted"),
         (_RULES_EXAMPLE | measure_with_interval("way_gain_shared", nan, nan), "not testable"),

@@ -34,6 +34,7 @@ from suchus.sim.metrics import (
     duty_factor,
     limb_load,
     sensed_phase,
+    smaller_swing,
     stance,
     time_window,
 )
@@ -137,8 +138,7 @@ class GaitDiagram(Experiment):
                 measures[f"{name}_vertical_mean"] = Measure(float(vertical_bend.mean()), "rad")
                 measures[f"{name}_vertical_amplitude"] = Measure(float(np.ptp(vertical_bend)) / 2, "rad")
         if "sensed_tail" in walk:
-            bend = walk.sensed_tail.values
-            measures["tail_swing_least"] = Measure(float(min(bend.max(), -bend.min())), "rad")
+            measures["tail_swing_least"] = Measure(float(smaller_swing(walk.sensed_tail)), "rad")
         if set(legs) == set(_ANIMAL_PHASES):
             phase_differences = [
                 abs((float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] + 0.5) % 1.0 - 0.5) for leg in legs

@@ -54,7 +54,9 @@ class GallopLimits(Experiment):
     answers = ("speed_bound", "flight_bound", "bound_over_walk", "servo_speed_needed", "gallops_share")
     needs = ("legs", "shells", "article_spine", "cable_tail")
     judged_settings = ("robot", "bounds", "trots", "walks", "tolerances")
-    judged_minima: ClassVar[Mapping[str, float]] = {"speeds": 4, "torques": 3, "seconds": 3.0}
+    judged_minima: ClassVar[Mapping[str, float]] = {
+        "speeds": 4, "torques": 3, "seconds": 3.0, "repeats": 6,
+    }  # fmt: skip
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that should gallop."""
@@ -74,8 +76,12 @@ class GallopLimits(Experiment):
     """Torque limit of the servos that pitch the trunk over the legs' [-]; so in the search for bounds and trots."""
     others_over_legs: float = 2.5 / 3.0
     """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
-    repeats: int = 3
-    """Number of robots built of each design; their median counts, so a gait must tolerate their errors [-]."""
+    repeats: int = 6
+    """Number of robots built of each design with servos like the robot's own or lesser ones [-]; their median and its
+    interval are judged, for which at least six are needed."""
+    map_repeats: int = 3
+    """Number of robots built of each other design on the map [-]; their median counts, so a gait must tolerate their
+    errors."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots built of the design, and of their grounds."""
     seconds: float = 3.0
@@ -93,12 +99,13 @@ class GallopLimits(Experiment):
             check.number("seconds", 0.05, 60.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.whole("repeats", 1, 1000)
+            check.whole("map_repeats", 1, 1000)
             for name in ("bounds", "walks"):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
 
     def quick(self) -> "GallopLimits":
         """Return two speeds, one torque, one robot of each design, half a second, a coarse step."""
-        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
+        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, map_repeats=1, seconds=0.5, timestep=0.005)
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate every gait with every servo on the map."""
@@ -108,35 +115,46 @@ class GallopLimits(Experiment):
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
         gaits: list[Gait] = [*(candidate.gait for _, candidate in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
-        robots = [self._robot_with_servos(torque, speed) for torque, speed in cells]
-        designed = [Run(robot=robot, gait=gait, label=gait.name) for robot in robots for gait in gaits]
-        runs = self.tolerances.repeats(designed, self.repeats)
+        own_cell = cells[self._own_cell(cells)]
+        counts = [
+            self.repeats if torque <= own_cell[0] and speed <= own_cell[1] else self.map_repeats
+            for torque, speed in cells
+        ]
+        runs: list[Run] = []
+        for (torque, speed), count in zip(cells, counts, strict=True):
+            robot = self._robot_with_servos(torque, speed)
+            designed = [Run(robot=robot, gait=gait, label=gait.name) for gait in gaits]
+            runs += self.tolerances.repeats(designed, count)
         duration = round(START + _RUN_UP + self.seconds, 2)
         record = simulate(
             runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
         )
-        shape = (len(self.torques), len(self.speeds), len(gaits), self.repeats)
+        shape = (len(self.torques), len(self.speeds), len(gaits), max(counts))
         window = time_window(record, START + _RUN_UP)
         joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
-        values = {
+        quantities = {
             "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
             "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
             "joint_speed": (joint_speed, "rad/s", "99th percentile of the fastest leg joint"),
+        }
+        values = {
+            name: (_of_robots(array.values, np.repeat(counts, len(gaits))).reshape(shape), unit, long_name)
+            for name, (array, unit, long_name) in quantities.items()
         }
         data = xr.Dataset(
             {
                 name: (
                     ("torque", "servo_speed", "gait"),
-                    np.median(array.values.reshape(shape), axis=-1),
+                    np.nanmedian(of_robots, axis=-1),
                     {"units": unit, "long_name": long_name},
                 )
-                for name, (array, unit, long_name) in values.items()
+                for name, (of_robots, unit, long_name) in values.items()
             }
             | {
                 "built_speed": (
                     ("torque", "servo_speed", "gait", "repeat"),
-                    values["speed"][0].values.reshape(shape),
-                    {"units": "m/s", "long_name": "speed forward of each robot that is built"},
+                    values["speed"][0],
+                    {"units": "m/s", "long_name": "speed forward of each robot that is built; NaN where none is"},
                 )
             },
             coords={
@@ -147,7 +165,19 @@ class GallopLimits(Experiment):
             },
             attrs={"own_torque": self._leg_servo.torque, "own_speed": self._leg_servo.speed},
         )
-        return SimulationResult(record=data, replays=self._replays(record, cells, data))
+        return SimulationResult(record=data, replays=self._replays(record, cells, counts, data))
+
+    def _own_cell(self, cells: Sequence[tuple[float, float]]) -> int:
+        """Return the index of the cell whose servos are most like the robot's own.
+
+        Args:
+            cells: torque limit [N m] and no-load speed [rad/s] of each cell of the map.
+        """
+        own = self._leg_servo
+        return min(
+            range(len(cells)),
+            key=lambda i: abs(cells[i][0] - own.torque) / own.torque + abs(cells[i][1] - own.speed) / own.speed,
+        )
 
     @property
     def _leg_servo(self) -> Servo:
@@ -184,28 +214,27 @@ class GallopLimits(Experiment):
         )
 
     def _replays(
-        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
+        self,
+        record: xr.Dataset,
+        cells: Sequence[tuple[float, float]],
+        counts: Sequence[int],
+        map_of_gaits: xr.Dataset,
     ) -> Mapping[str, Replay]:
         """Return the replay of the fastest bound of all, and of the fastest with servos most like the robot's own.
 
         Args:
             record: record of all runs.
             cells: torque limit [N m] and no-load speed [rad/s] of each cell of the map.
+            counts: number of robots of each gait in each cell [-].
             map_of_gaits: ``speed`` (torque, servo_speed, gait) [m/s], with the ``kind`` of each gait.
         """
         bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
         best_cell = int(np.argmax(bound.max(1)))
-        nearest_cell = min(
-            range(len(cells)),
-            key=lambda i: (
-                abs(cells[i][0] - self._leg_servo.torque) / self._leg_servo.torque
-                + abs(cells[i][1] - self._leg_servo.speed) / self._leg_servo.speed
-            ),
-        )
+        nearest_cell = self._own_cell(cells)
         servo_texts = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best_cell, nearest_cell)]
+        count_of_gaits = map_of_gaits.sizes["gait"]
         runs = [
-            (i * map_of_gaits.sizes["gait"] + int(np.argmax(bound[i]))) * self.repeats
-            for i in (best_cell, nearest_cell)
+            sum(counts[:i]) * count_of_gaits + int(np.argmax(bound[i])) * counts[i] for i in (best_cell, nearest_cell)
         ]
         return replayed(
             "gallop_replay.html",
@@ -225,7 +254,8 @@ class GallopLimits(Experiment):
         gallops = (bound.speed > walks.speed) & (bound.flight >= MIN_FLIGHT_FRACTION)
         pays = gallops.sel(torque=design_servo["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
-        return estimated("bound_over_walk", own_bound.built_speed / own_walk.built_speed, "-") | Measures(
+        ratio = (own_bound.built_speed / own_walk.built_speed).dropna("repeat")
+        return estimated("bound_over_walk", ratio, "-") | Measures(
             {
                 "speed_bound": Measure(float(own_bound.speed), "m/s"),
                 "flight_bound": Measure(float(own_bound.flight), "-"),
@@ -253,6 +283,18 @@ class GallopLimits(Experiment):
             "Each point is what was simulated with that servo. The grey line is the robot's own servo.",
         )
         return {"gallop_limits": figure}
+
+
+def _of_robots(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Return values of runs as (case, robot), NaN where a case has fewer robots than another.
+
+    Args:
+        values: value of each run, case by case, shape (run,).
+        counts: number of robots of each case, shape (case,).
+    """
+    table = np.full((len(counts), int(counts.max())), np.nan)
+    table[np.arange(table.shape[1]) < counts[:, None]] = values
+    return table
 
 
 MIN_FLIGHT_FRACTION = 0.1

@@ -4,8 +4,21 @@ from itertools import product
 
 from suchus.article.paper import CLAIMS
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, ControlGroup, Rule, Variation, measure_with_interval
+from suchus.article.verdict.rule import (
+    DEFAULT_SPREAD_OF,
+    Clause,
+    ControlGroup,
+    Interpretation,
+    Rule,
+    SmallestEffect,
+    Variation,
+    measure_with_interval,
+)
 
+_VISIBLE_RISE = SmallestEffect(
+    size=0.001, why="1 mm is a pixel of a picture of the whole robot, 1 m in a thousand pixels"
+)
+_PRINTED_LOSS = SmallestEffect(size=0.01, why="the article prints losses in whole per cents")
 _SMALL_LOSS = Clause("", ">=", -1 / 3, "'only' is a loss of less than a third")
 _LARGE_LOSS = Clause("", "<=", -1 / 2, "a loss of most is one of more than half")
 _TOTAL_LOSS = Clause("", "<=", -0.9, "less than a tenth is left of a motion that has ended")
@@ -34,6 +47,9 @@ _FITTED_CLAIMS = ("fault_front_yaw_limbs_only", "fault_hind_yaw_limbs_only")
 """Claims whose number follows from the fit of the two displacements: the intact robot makes most of the change."""
 _TOLERATED_JOINTS = ("front_yaw", "hind_yaw", "hind_pitch")
 """Joints for which the article says that the loss is smaller with spine and tail; a front pitch joint stops both."""
+_LIMP = "limp"
+_LOCKED = Interpretation(name="locked", measures=("_limp", "_locked"))
+"""The article's joint 'cannot receive and execute commands': limp, as a servo without pulses, or held where it is."""
 
 
 def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
@@ -53,8 +69,8 @@ def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
         for affected_side in ("one", "both")
     )
     explanation = (
-        f"Judged is limp, one: {{{measure_name}_low:+.0%}} to {{{measure_name}_high:+.0%}}. "
-        f"All readings: {all_variants}."
+        f"Of a limp joint of one leg: {{{measure_name}_low:+.0%}} to {{{measure_name}_high:+.0%}}. "
+        f"All variants: {all_variants}."
     )
     return Rule(
         claim=f"fault_{joint}_{group}",
@@ -65,6 +81,8 @@ def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
         control=_INTACT_GROUP,
         spread=(measure_name,),
         of=DEFAULT_SPREAD_OF,
+        interpretation=_LIMP,
+        others=(_LOCKED,),
         why=(_limbs_only_explanation(joint) if group == "limbs_only" else "") + explanation,
     )
 
@@ -112,7 +130,7 @@ RULES = (
         measure="support_share_limp",
         holds=(
             Clause("support_share_limp", ">", 0.5, "to carry the body is to carry most of its weight"),
-            Clause("com_rise_limp", ">", 0.0, "raised is higher than with the joint intact"),
+            Clause("com_rise_limp", ">", 0.0, "raised is higher than with the joint intact", _VISIBLE_RISE),
             Clause("foot_free_limp", ">=", 0.5, "a foot that swings is off the ground for most of its swing"),
         ),
         control=ControlGroup(
@@ -125,13 +143,17 @@ RULES = (
         "{foot_free_intact:.0%}) and rises by {foot_lift_limp:mm.0f} mm (intact {foot_lift_intact:mm.0f} mm).",
         spread=("support_share_limp", "com_rise_limp", "foot_free_limp"),
         of=DEFAULT_SPREAD_OF,
+        interpretation=_LIMP,
+        others=(_LOCKED,),
     ),
     Rule(
         claim="fault_tolerance",
         experiment="joint_faults",
         measure="gain_front_yaw_limp_one",
         holds=tuple(
-            Clause(f"gain_{joint}_limp_one", ">", 0.0, f"{joint.replace('_', ' ')}: less of its own is lost")
+            Clause(
+                f"gain_{joint}_limp_one", ">", 0.0, f"{joint.replace('_', ' ')}: less of its own is lost", _PRINTED_LOSS
+            )
             for joint in _TOLERATED_JOINTS
         ),
         control=ControlGroup(
@@ -140,6 +162,8 @@ RULES = (
         ),
         spread=tuple(f"gain_{joint}_limp_one" for joint in _TOLERATED_JOINTS),
         of=DEFAULT_SPREAD_OF,
+        interpretation=_LIMP,
+        others=(_LOCKED,),
         why=_tolerance_explanation(),
     ),
 )
@@ -149,8 +173,18 @@ VARIED = Variation(claims=("fault_support",), designs=("robot", "gait"), setting
 _READINGS = list(product(("limp", "locked"), ("one", "both")))
 
 
+def _in_both_readings(measures: dict[str, float]) -> dict[str, float]:
+    """Return example measures of a limp joint, and the same of a locked one."""
+    return measures | {_LOCKED.measure(name): value for name, value in measures.items()}
+
+
 def _loss(
-    joint: str, arm: str, value: float, lower_bound: float | None = None, upper_bound: float | None = None
+    joint: str,
+    arm: str,
+    value: float,
+    lower_bound: float | None = None,
+    upper_bound: float | None = None,
+    locked: float | None = None,
 ) -> dict[str, float]:
     """Return example measures of one loss: the judged one with its interval, and those that the explanation names.
 
@@ -160,17 +194,20 @@ def _loss(
         value: judged loss [-].
         lower_bound: lower end of its interval [-]; the loss itself by default.
         upper_bound: upper end of its interval [-]; the loss itself by default.
+        locked: loss with the joint locked, without an interval [-]; as if it were limp by default.
     """
     measure_name = f"loss_{joint}_limp_one_{arm}"
-    measures = {f"loss_{joint}_{kind}_{legs}_{arm}": -0.5 for kind, legs in _READINGS}
-    measures |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
-    return measures | {
-        f"own_loss_{joint}_limp_one_limbs_only": -0.2,
-        f"loss_{joint}_limp_one_limbs_tail_lifted": -0.8,
+    judged_measures = {
         measure_name: value,
         f"{measure_name}_low": value if lower_bound is None else lower_bound,
         f"{measure_name}_high": value if upper_bound is None else upper_bound,
     }
+    locked_name = _LOCKED.measure(measure_name)
+    locked_measures = {} if locked is None else measure_with_interval(locked_name, locked, locked)
+    measures = {f"loss_{joint}_{kind}_{legs}_{arm}": -0.5 for kind, legs in _READINGS}
+    measures |= {"loss_intact_limbs_only": -0.77, "loss_intact_limbs_tail_lifted": -0.78}
+    measures |= {f"own_loss_{joint}_limp_one_limbs_only": -0.2, f"loss_{joint}_limp_one_limbs_tail_lifted": -0.8}
+    return measures | _in_both_readings(judged_measures) | locked_measures
 
 
 def _gain_measures(**gains: float) -> dict[str, float]:
@@ -180,10 +217,10 @@ def _gain_measures(**gains: float) -> dict[str, float]:
         gain = gains.get(joint, 0.1)
         measures |= measure_with_interval(f"gain_{joint}_limp_one", gain - 0.02, gain + 0.02)
         measures |= {f"loss_{joint}_limp_one_coordinated": -0.2, f"own_loss_{joint}_limp_one_limbs_only": -0.2 - gain}
-    return measures
+    return _in_both_readings(measures)
 
 
-def _support_measures(load_fraction: float = 0.9, rise: float = 0.001, free: float = 0.6) -> dict[str, float]:
+def _support_measures(load_fraction: float = 0.9, rise: float = 0.00151, free: float = 0.6) -> dict[str, float]:
     """Return example measures of the support, with narrow intervals.
 
     Args:
@@ -199,7 +236,7 @@ def _support_measures(load_fraction: float = 0.9, rise: float = 0.001, free: flo
         "foot_lift_limp": 0.02,
     }
     ends = [measure_with_interval(name, value - 5e-4, value + 5e-4) for name, value in judged_measures.items()]
-    return reported_measures | {"foot_lift_intact": 0.02} | ends[0] | ends[1] | ends[2]
+    return reported_measures | {"foot_lift_intact": 0.02} | _in_both_readings(ends[0] | ends[1] | ends[2])
 
 
 EXAMPLES: Examples = {
@@ -213,6 +250,7 @@ EXAMPLES: Examples = {
         (_loss("front_yaw", "limbs_only", -0.806), "same sense"),
         (_loss("front_yaw", "limbs_only", -0.505), "same sense"),
         (_loss("front_yaw", "limbs_only", -0.495), "contradicted"),
+        (_loss("front_yaw", "limbs_only", -0.80, locked=-0.495), "depends on the reading"),
     ],
     "fault_front_yaw_coordinated": [
         (_loss("front_yaw", "coordinated", -0.22), "reproduced"),
@@ -285,24 +323,33 @@ EXAMPLES: Examples = {
         (_loss("hind_pitch", "coordinated", 0.006), "same sense"),
         (_loss("hind_pitch", "coordinated", -0.099), "same sense"),
         (_loss("hind_pitch", "coordinated", -0.101), "contradicted"),
+        (_loss("hind_pitch", "coordinated", -0.40, locked=-0.02), "depends on the reading"),
+        (_loss("hind_pitch", "coordinated", -0.40, locked=-0.11), "contradicted"),
+        (_loss("hind_pitch", "coordinated", -0.05, locked=-0.11), "depends on the reading"),
+        (_loss("hind_pitch", "coordinated", -0.05, -0.11, 0.0, locked=-0.2), "undecided"),
     ],
     "fault_support": [
         (_support_measures(), "reproduced"),
         (_support_measures(load_fraction=0.505), "reproduced"),
         (_support_measures(load_fraction=0.5), "undecided"),
         (_support_measures(load_fraction=0.495), "contradicted"),
-        (_support_measures(rise=0.0001), "undecided"),
-        (_support_measures(rise=-0.001), "contradicted"),
+        (_support_measures(rise=0.00149), "undecided"),
+        (_support_measures(rise=0.00049), "contradicted"),
         (_support_measures(free=0.505), "reproduced"),
         (_support_measures(free=0.5), "undecided"),
         (_support_measures(free=0.495), "contradicted"),
+        (_support_measures() | measure_with_interval("foot_free_locked", 0.3, 0.4), "depends on the reading"),
     ],
     "fault_tolerance": [
         (_gain_measures(), "reproduced"),
-        *((_gain_measures(**{joint: 0.021}), "reproduced") for joint in _TOLERATED_JOINTS),
-        *((_gain_measures(**{joint: 0.0}), "undecided") for joint in _TOLERATED_JOINTS),
-        *((_gain_measures(**{joint: -0.021}), "contradicted") for joint in _TOLERATED_JOINTS),
-        (_gain_measures(front_yaw=0.0, hind_pitch=-0.021), "contradicted"),
+        *((_gain_measures(**{joint: 0.0301}), "reproduced") for joint in _TOLERATED_JOINTS),
+        *((_gain_measures(**{joint: 0.0299}), "undecided") for joint in _TOLERATED_JOINTS),
+        *((_gain_measures(**{joint: -0.0101}), "contradicted") for joint in _TOLERATED_JOINTS),
+        (_gain_measures(front_yaw=0.0, hind_pitch=-0.0101), "contradicted"),
         (_gain_measures(front_yaw=float("nan")), "not testable"),
+        (
+            _gain_measures() | measure_with_interval("gain_hind_yaw_locked_one", -0.1, -0.02),
+            "depends on the reading",
+        ),
     ],
 }

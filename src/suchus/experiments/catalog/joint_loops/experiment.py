@@ -104,6 +104,12 @@ class JointLoops(Experiment):
         progress("stand", 0.7)
         step = physics_step(self.robot)
         data["angle"] = (("test", "ki", "time"), np.array(self._stand_angles(robots, load)), {"units": "rad"})
+        unlimited = with_servos(robots[-1], lambda servo: replace(servo, integral_limit=servo.torque))
+        data["unlimited_angle"] = (
+            ("test", "time"),
+            np.array(self._stand_angles([unlimited], load))[:, 0],
+            {"units": "rad", "long_name": "angle where the integral may build up all of the servo's torque"},
+        )
         data = data.assign_coords(
             ki=("ki", list(self.integrals), {"units": "N m/(rad s)", "long_name": "integral gain"}),
             test=list(TESTS),
@@ -176,17 +182,14 @@ class JointLoops(Experiment):
                 f"tracking_error_{name}": Measure(float(np.sqrt(gain_record.error_ms.mean())), "rad"),
                 f"forward_{name}": Measure(float(gain_record.forward), "m"),
             }
-        final_interval = record.angle.isel(ki=last_gain).sel(time=slice(record.time[-1] - 0.5, None))
-        droops = np.abs(record.angle.sel(test="load").isel(time=-1))
+        droop = abs(float(record.angle.isel(ki=0).sel(test="load")[-1]))
         total = float(record.error_ms.isel(ki=0).sum())
         by_load = 1.0 - float(record.less_droop_ms.sum()) / total
+        measures |= _loop_errors("pid", record.angle.isel(ki=last_gain), step, droop)
+        measures |= _loop_errors("pid_unlimited", record.unlimited_angle, step, droop)
         return measures | {
             "load": Measure(record.attrs["load"], "N m"),
             "droop_by_kp": Measure(record.attrs["load"] / record.attrs["kp"], "rad"),
-            "droop_taken": Measure(1.0 - float(droops[last_gain] / droops[0]), "-"),
-            "load_error_pid": Measure(float(droops[last_gain]), "rad"),
-            "step_error_pid": Measure(abs(float(final_interval.sel(test="step")[-1]) - step), "rad"),
-            "ripple_pid": Measure(float((final_interval.max("time") - final_interval.min("time")).max()), "rad"),
             "tracking_by_droop": Measure(by_load, "-"),
             "tracking_by_damping": Measure(1.0 - float(record.less_both_ms.sum()) / total - by_load, "-"),
         }
@@ -207,6 +210,27 @@ class JointLoops(Experiment):
                 "each kind with several integral gains.",
             ),
         }
+
+
+def _loop_errors(loop: str, angle: xr.DataArray, step: float, droop: float) -> Measures:
+    """Return the errors of a loop on the stand after load and step, its ripple, and what its integral takes away.
+
+    Args:
+        loop: name of the loop, with which the names of the measures end.
+        angle: angle of the joint, dimensions ``test`` and ``time`` [rad].
+        step: height of the step [rad].
+        droop: error under the load without an integral term [rad].
+    """
+    load_error = abs(float(angle.sel(test="load")[-1]))
+    final_interval = angle.sel(time=slice(angle.time[-1] - 0.5, None))
+    return Measures(
+        {
+            f"load_error_{loop}": Measure(load_error, "rad"),
+            f"step_error_{loop}": Measure(abs(float(angle.sel(test="step")[-1]) - step), "rad"),
+            f"ripple_{loop}": Measure(float((final_interval.max("time") - final_interval.min("time")).max()), "rad"),
+            f"droop_taken_{loop}": Measure(1.0 - load_error / droop, "-"),
+        }
+    )
 
 
 def rise_time(time: np.ndarray, angle: np.ndarray, step: float) -> float:

@@ -2,10 +2,13 @@
 
 from suchus.article.paper.claims_animals import FORE_SPREAD, HIND_SPREAD
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule, Variation
+from suchus.article.verdict.rule import Clause, Rule, SmallestEffect, Variation
 
 _FORE, _HIND = 0.457, 0.479
 _TRIALS = "two standard deviations of single trials, which 19 of 20 animals' steps are within"
+_LEAST_PUSH = SmallestEffect(
+    size=0.01, why="a hundredth of the weight is less than a sixth of the scatter of the animals' single trials"
+)
 _HALF = "a quarter of stance from touch-down or from lift-off at least"
 
 RULES = (
@@ -46,8 +49,8 @@ RULES = (
         experiment="salamander",
         measure="foot_force_foreaft_hind",
         holds=(
-            Clause("foot_force_foreaft_hind", ">", 0.0, "forward along the course"),
-            Clause("foot_force_foreaft_fore", "<", 0.0, "backward along the course"),
+            Clause("foot_force_foreaft_hind", ">", 0.0, "forward along the course", _LEAST_PUSH),
+            Clause("foot_force_foreaft_fore", "<", 0.0, "backward along the course", _LEAST_PUSH),
         ),
         why="At that instant the ground pushes a hind foot by {foot_force_foreaft_hind:+.3f} body weights along the "
         "course and a fore foot by {foot_force_foreaft_fore:+.3f}.",
@@ -57,7 +60,7 @@ RULES = (
 VARIED = Variation(claims=tuple(rule.claim for rule in RULES), settings={"friction_scales": (0.7,), "cycles": 6})
 
 _TIMES = {"foot_force_time_fore": 0.6, "foot_force_time_hind": 0.4}
-_PUSHES = {"foot_force_foreaft_hind": 0.01, "foot_force_foreaft_fore": -0.01}
+_PUSHES = {"foot_force_foreaft_hind": 0.0101, "foot_force_foreaft_fore": -0.0101}
 
 EXAMPLES: Examples = {
     "salamander_fore_force": [
@@ -89,8 +92,8 @@ EXAMPLES: Examples = {
     ],
     "salamander_hind_push": [
         (_PUSHES, "reproduced"),
-        (_PUSHES | {"foot_force_foreaft_hind": -0.01}, "contradicted"),
-        (_PUSHES | {"foot_force_foreaft_fore": 0.01}, "contradicted"),
+        (_PUSHES | {"foot_force_foreaft_hind": 0.0099}, "contradicted"),
+        (_PUSHES | {"foot_force_foreaft_fore": -0.0099}, "contradicted"),
         ({"foot_force_foreaft_hind": 0.06, "foot_force_foreaft_fore": -0.06}, "reproduced"),
     ],
 }

@@ -22,6 +22,7 @@ from suchus.experiments.experiment import (
     Replay,
     SimulationResult,
     estimated,
+    estimated_fraction,
     silent,
     staged,
 )
@@ -53,10 +54,12 @@ _HEIGHT_TOLERANCE = 1e-9  # heights that differ by less are equal [m]
 SINGLE = ("low_crawl", "semi_erect", "high_walk", "high_walk_level")
 """Arms that keep one posture."""
 _COMPARED_ARMS = ("low_crawl", "high_walk_level")
+FLAT_ARMS = ("low_crawl", "high_walk")
+"""Arms whose costs on even ground are compared, of more robots than walk on the other grounds."""
 _STRUCTURE_ARMS = ("low_crawl", "high_walk", "high_walk_level")
 """Arms of the two structures that the article compares."""
 _ROUGH_MEASURES = (
-    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_ahead_share",
+    "met_judged", "rough_grounds", "erect_open_loop_ahead_share", "erect_open_loop_kept_share", "erect_ahead_share",
     *(f"falls_rough_{name}" for name in _STRUCTURE_ARMS),
 )  # fmt: skip
 """Measures of the two structures on rough grounds."""
@@ -81,7 +84,7 @@ class Terrain(Experiment):
     needs = ("foot_paths",)
     judged_settings = ("robot", "crawl", "semi_erect", "high_walk", "surfaces")
     judged_minima: ClassVar[Mapping[str, float]] = {
-        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "walked": 14.0,
+        "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "flat_robots": 6, "walked": 14.0,
     }  # fmt: skip
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -108,6 +111,9 @@ class Terrain(Experiment):
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
     """Runs of each posture on each ground [-]."""
+    flat_robots: int = 12
+    """Number of robots, each built of the design, of which the cost on even ground is compared [-]; at least six are
+    needed for an interval of the median."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """By how much the robots and grounds of the seeds differ from their design."""
     walked: float = 14.0
@@ -127,13 +133,22 @@ class Terrain(Experiment):
             check.that(len(self.surfaces) > 0, f"{self.name()}.surfaces is empty; even or bumps is needed")
             check.whole("transitions", 1, 6)
             check.whole("seeds", 1, 1000)
+            check.whole("flat_robots", 1, 1000)
             check.number("walked", 0.5, 3600.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""
         return replace(
-            self, bumps=(0.03,), steps=(), stones=(0.04,), surfaces=("even",), transitions=2, seeds=1, walked=1.5
+            self,
+            bumps=(0.03,),
+            steps=(),
+            stones=(0.04,),
+            surfaces=("even",),
+            transitions=2,
+            seeds=1,
+            flat_robots=1,
+            walked=1.5,
         )
 
     def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
@@ -157,7 +172,8 @@ class Terrain(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Walk on every ground, and turn every posture into every other."""
-        ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.9))
+        ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.85))
+        ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.85, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return SimulationResult(record=record, replays=self._replays(record))
@@ -169,10 +185,13 @@ class Terrain(Experiment):
             return super(Terrain, self).simulate_measures(measure_names, progress)
         needs_rough = any(name in _ROUGH_MEASURES for name in names)
         variant = self if needs_rough else replace(self, bumps=(), steps=(), stones=())
-        ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.9), _STRUCTURE_ARMS)
+        ground_record = variant._ground_record(staged(progress, "grounds", 0.0, 0.8), _STRUCTURE_ARMS)
+        ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.8, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 1.0))
         measures, rough_record = _flat(ground_record) | _transitions(change_record), _rough_grounds(ground_record)
-        return measures | _rough_measures(rough_record) | _falls(rough_record) if needs_rough else measures
+        return (
+            measures | _rough_measures(rough_record, ground_record) | _falls(rough_record) if needs_rough else measures
+        )
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how far each posture gets on each kind of ground, who met and who fell, and the transitions."""
@@ -201,7 +220,7 @@ class Terrain(Experiment):
         share = _share_of_best(record)
         return measures | {
             **_flat(record),
-            **_rough_measures(rough_record),
+            **_rough_measures(rough_record, record),
             **_falls(rough_record),
             "switching_share_of_best_worst": Measure(float(share.min()), "-"),
             "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
@@ -318,6 +337,33 @@ class Terrain(Experiment):
         data["walked"] = ((), self.walked, {"units": "s"})
         data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
         return data
+
+    def _flat_costs(self, ground_record: xr.Dataset, progress: Progress) -> xr.DataArray:
+        """Return the cost of transport of crawl and high walk on even ground, by condition and robot [-].
+
+        Args:
+            ground_record: record of the grounds, of which the first is even; its robots count first.
+            progress: called with the fraction that is done.
+        """
+        arms = {name: arm for name, arm in self.arms().items() if name in FLAT_ARMS}
+        seeds = range(self.seeds, self.flat_robots)
+        runs = [
+            self.tolerances.draw_run(Run(robot=self.robot, gait=gait, control=control, label=name, seed=seed), seed)
+            for name, (gait, control) in arms.items()
+            for seed in seeds
+        ]
+        cost = ground_record.cost.isel(ground=0, drop=True).sel(arm=list(FLAT_ARMS)).values[:, : self.flat_robots]
+        if runs:
+            record = simulate(
+                runs, duration=START + self.walked, timestep=self.timestep, sample_stride=5, progress=progress
+            )
+            cost = np.concatenate([cost, cost_of_transport(record).values.reshape(len(arms), -1)], axis=1)
+        return xr.DataArray(
+            cost,
+            dims=("flat_arm", "robot_built"),
+            coords={"flat_arm": list(FLAT_ARMS)},
+            attrs={"units": "1", "long_name": "cost of transport on even ground of each robot that is built"},
+        )
 
     @property
     def _pace(self) -> float:
@@ -446,15 +492,19 @@ def _most_tilt(record: xr.Dataset) -> np.ndarray:
 
 def _flat(record: xr.Dataset) -> Measures:
     """Return what the crawl costs on even ground, of what the high walk costs, of robots as built."""
-    cost = record.isel(ground=0).cost
-    ratio = cost.sel(arm="low_crawl") / cost.sel(arm="high_walk")
-    return estimated("flat_cost_ratio", ratio, "-")
+    crawl, high_walk = (record.flat_cost.sel(flat_arm=name, drop=True) for name in FLAT_ARMS)
+    return estimated("flat_cost_ratio", crawl / high_walk, "-")
 
 
-def _rough_measures(rough_record: xr.Dataset) -> Measures:
+def _rough_measures(rough_record: xr.Dataset, record: xr.Dataset) -> Measures:
     """Return the fraction of rough grounds on which erect legs get farther; NaN if a robot did not reach its obstacle.
 
-    Each seed of each kind and height is a ground of its own, and a robot of its own.
+    Each seed of each kind and height is a ground of its own, and a robot of its own. Farther is in metres, and as a
+    fraction of the same robot's displacement on even ground.
+
+    Args:
+        rough_record: record of the rough grounds.
+        record: record of all grounds, the even one first.
     """
     met_fraction = (
         float(rough_record.met.sel(arm=list(_COMPARED_ARMS)).mean("seed").min())
@@ -463,11 +513,14 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
     )
     distances = rough_record.forward.stack(one=("ground", "seed"))
     crawl, erect, level = (distances.sel(arm=arm, drop=True) for arm in _STRUCTURE_ARMS)
+    even_distances = record.forward.isel(ground=0, drop=True)
+    kept = (rough_record.forward / even_distances).stack(one=("ground", "seed"))
+    crawl_kept, erect_kept = (kept.sel(arm=arm, drop=True) for arm in FLAT_ARMS)
     is_judged = met_fraction >= 1.0
     semi_erect_measures = Measures()
 
     def share(name: str, is_ahead: xr.DataArray) -> Measures:
-        return estimated(name, is_ahead.astype(float) if is_judged else [float("nan")], "-", middle=np.mean)
+        return estimated_fraction(name, is_ahead if is_judged else [float("nan")])
 
     if "semi_erect" in rough_record.arm.values:
         semi = distances.sel(arm="semi_erect", drop=True)
@@ -478,6 +531,7 @@ def _rough_measures(rough_record: xr.Dataset) -> Measures:
             "rough_grounds": Measure(float(rough_record.sizes["ground"] * rough_record.sizes["seed"]), "-"),
         },
         share("erect_open_loop_ahead_share", erect > crawl),
+        share("erect_open_loop_kept_share", erect_kept > crawl_kept),
         share("erect_ahead_share", level > crawl),
         semi_erect_measures,
     )
