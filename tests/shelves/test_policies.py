@@ -6,6 +6,7 @@ import pytest
 from suchus.core import sources
 from suchus.core.errors import UnknownName, UnsuitedRobot
 from suchus.core.sources import kind_of, shelf_of
+from suchus.experiments.study.page import _control
 from suchus.experiments.train import motion
 from suchus.robot.control import Learned
 from suchus.robot.control.policy import MAX_FILE_SIZE, policy_bytes, robot_digest
@@ -65,6 +66,8 @@ def test_a_project_has_policies_of_its_own(tmp_path, monkeypatch):
     monkeypatch.setenv(sources.VARIABLE, str(tmp_path))
     assert POLICIES["mine"] == POLICIES["velocity"] == load_policy(tmp_path / "policies" / "mine.npz")
     assert Learned(policy="mine").policy == POLICIES["velocity"]
+    control = _control({"kind": "learned", "policy": "mine", "forward": 0.1})
+    assert control == Learned(policy=POLICIES["velocity"], forward=0.1)
 
 
 def test_the_plural_of_a_kind():

@@ -118,7 +118,9 @@ def train(
                 f"table of {table_count} generations: up to {search.max_speed:.3g} m/s and {search.max_turn:.3g} "
                 f"rad/s, mean loss {search.table_loss():.3g}"
             )
-        best, generations = _train_network(training, store, table, network_generations, deadline, curve, move, path)
+        best, generations, losses = _train_network(
+            training, store, table, network_generations, deadline, curve, move, path
+        )
     record = {
         "command": repeat_command(training, table_count, generations),
         "table generations": str(table_count),
@@ -134,6 +136,8 @@ def train(
             f"{table_judgement.error:.3g}"
         )
         best, judgement = None, table_judgement
+    if losses:
+        record |= {"episode loss of the table": f"{losses[0]:.4g}", "episode loss": f"{min(losses):.4g}"}
     record |= {"error": f"{judgement.error:.4g}", "error of the table": f"{table_judgement.error:.4g}"}
     policy = with_training(best or table, **record)
     save_policy(policy, path)
@@ -215,17 +219,18 @@ def _train_network(
     curve: _Curve,
     progress: Progress,
     path: Path,
-) -> tuple[Policy | None, int]:
+) -> tuple[Policy | None, int, list[float]]:
     """Search the network until its generations or the time are over.
 
     Every few generations the mean of the search plays the same episodes as the best so far; the better one stays.
 
     Returns:
-        The best policy with a network, None if no network is better than the table, and the number of generations.
+        The best policy with a network, None if no network is better than the table; the number of generations; and the
+        losses of the compared networks in the same episodes, the first of which corrects nothing.
     """
     search, best, target = NetworkSearch(training), None, MAX_GENERATIONS if generations is None else generations
     check_episodes = draw_episodes(training, table, _CHECK_EPISODES, 10**6)
-    best_loss = np.inf
+    losses: list[float] = []
     while search.generation < target:
         number = _NETWORK_NUMBER + search.generation
         if generations is None and not store.has(number) and time.monotonic() > deadline:
@@ -245,17 +250,17 @@ def _train_network(
         check_loss = float(result.check.values[0])
         if is_check:
             curve.add("network", search.generation, check_loss)
-            if check_loss < best_loss:
-                best_loss = check_loss
-                if search.generation > 0:
-                    best = with_network(training, table, weights[-1])
-                    _keep(path, best)
+            if search.generation > 0 and check_loss < min(losses):
+                best = with_network(training, table, weights[-1])
+                _keep(path, best)
+            losses.append(check_loss)
         search.tell(result.loss.values)
     if search.generation and search.generation % _CHECK_INTERVAL:
         last = with_network(training, table, search.mean)
         loss = float(evaluate_policies(training, [last], check_episodes)[0])
-        best = last if loss < best_loss else best
-    return best, search.generation
+        best = last if loss < min(losses) else best
+        losses.append(loss)
+    return best, search.generation, losses
 
 
 def _keep(path: Path, policy: Policy) -> None:

@@ -4,7 +4,8 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import pi
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -40,6 +41,12 @@ _READING_SENSORS = {
 _SHARED_ACTIONS = [name for name, action in ACTIONS.items() if not action.per_limb]
 
 
+if TYPE_CHECKING:
+    AnyPolicy = Policy  # a name or a path becomes the policy before anybody reads the field
+else:
+    AnyPolicy = Policy | str | Path
+
+
 def _default_policy() -> Policy:
     """Return the policy ``velocity`` of the catalog."""
     from suchus.robot.policies import POLICIES  # noqa: PLC0415  the catalog reads policies, which are values of this wing
@@ -55,7 +62,7 @@ class Learned:
     is put down. A command beyond what the policy was trained for is replaced by the nearest one, with a warning.
     """
 
-    policy: Policy = field(default_factory=_default_policy)
+    policy: AnyPolicy = field(default_factory=_default_policy)
     """The policy: a value, its name in ``suchus.POLICIES``, or the path of its file."""
     forward: Schedule | None = None
     """Commanded forward speed [m/s]; None for half of the greatest one that was trained."""
