@@ -318,7 +318,8 @@ def test_a_package_puts_things_on_the_shelves_by_entry_points(tmp_path, monkeypa
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(site), os.environ.get("PYTHONPATH", "")]))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     said = done.stdout.splitlines()
-    assert said[0] == "Tired(joint='LF_yaw', at=0.0) backlash deaf limp locked lost_foot offset slow tired weak"
+    faults = "backlash deaf delayed frozen limp locked lost_foot offset slow tired weak"
+    assert said[0] == f"Tired(joint='LF_yaw', at=0.0) {faults}"
     assert said[1] == f"{site / 'my_lab/bad.py'}, line 3, cannot be loaded: OSError: no disk."
     assert said[2].startswith("the entry point whole = 'my_lab.tired' of my-lab must declare `robot`")
     assert said[3] == "True"

@@ -55,12 +55,14 @@ COLUMNS = {
     "core/kernel_cache.py": "letters of a digest",
     "core/machine.py": "letters of a digest",
     "article/verdict/rule.py": "letters of a digest",
+    "sim/immersion/meshes.py": "the corners of a triangle",
     "sim/hydro/forces.py": "rows of the table of pieces and of inertia",
     "robot/design/pieces.py": "a row of the table of pieces",
     "hardware/bus/wiring.py": "letters of a digest",
     "core/files/provenance.py": "letters of a digest",
     "core/jobs/made_by.py": "letters of a digest",
     "core/sources.py": "letters of a digest",
+    "robot/control/policy.py": "letters of a digest",
     "experiments/study/claims_table.py": "letters of a digest",
 }
 """Files with such a number in brackets, and what it means there."""
