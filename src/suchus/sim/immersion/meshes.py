@@ -15,7 +15,7 @@ _BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 
 """Corners of each face of a box, counterclockwise seen from outside."""
 
 
-class Solid(NamedTuple):
+class SolidMesh(NamedTuple):
     """A closed surface, in the frame of its principal axes."""
 
     triangles: Float[np.ndarray, "triangle 9"]
@@ -44,7 +44,7 @@ def box_triangles(half: Float[np.ndarray, "3"]) -> Float[np.ndarray, "12 9"]:
 
 def solid(
     vertices: Float[np.ndarray, "vertex 3"], faces: Int[np.ndarray, "face 3"], name: str, *, is_convex: bool = False
-) -> Solid:
+) -> SolidMesh:
     """Return a mesh as a closed surface.
 
     Args:
@@ -85,7 +85,7 @@ def solid(
         axes[:, 0] *= -1.0
     half = np.sqrt(5.0 * moments / volume)
     half *= (volume / (4.0 / 3.0 * np.pi * np.prod(half))) ** (1.0 / 3.0)
-    return Solid((corners @ axes).reshape(-1, 9), volume, centre, axes, half)
+    return SolidMesh((corners @ axes).reshape(-1, 9), volume, centre, axes, half)
 
 
 def _volume(corners: Float[np.ndarray, "triangle 3 3"]) -> float:
