@@ -19,7 +19,7 @@ from suchus.apps.cli import main
 from suchus.core import sources
 from suchus.sim.faults import from_table
 
-ELSEWHERE = {"protocols": "tests/hardware/test_own_protocol.py"}
+ELSEWHERE = {"protocols": "tests/hardware/test_own_protocol.py", "policies": "tests/shelves/test_policies.py"}
 """Folders of a project whose one file is tried in another test."""
 
 ROBOT = """

@@ -35,7 +35,6 @@ _EXTRAS = {
     "capture": "tracks of DeepLabCut, SLEAP, LightningPose, Anipose, C3D; films",
     "gym": "Gymnasium tasks",
     "usd": "suchus export --format usd",
-    "onnx": "suchus export --format onnx",
     "hardware": "suchus drive and suchus calibrate, with real servos",
     "meshes": "suchus import of a robot with meshes",
     "cluster": "studies on many machines",
