@@ -15,6 +15,7 @@ from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import xarray as xr
@@ -24,7 +25,7 @@ from tests.cli.test_failing_writes import SEARCH, STUDY, film
 from tests.model.hinge_trees import quadruped
 from tests.wires import Obedient, wiring
 
-from suchus.apps.cli import calibrate, demo, drive, main, size, view
+from suchus.apps.cli import calibrate, demo, drive, main, size, train, view
 from suchus.apps.cli.entry import COMMANDS
 from suchus.apps.laboratory import page
 from suchus.apps.laboratory.engine import Engine
@@ -32,7 +33,9 @@ from suchus.core.files import load, save
 from suchus.core.writing import MANIFEST
 from suchus.hardware import Rig, straight, write_map, write_wiring
 from suchus.hardware.emulator import Emulator, MemoryPort
+from suchus.robot.control.policy import SUFFIX, save_policy
 from suchus.robot.gaits import GAITS
+from suchus.robot.policies import POLICIES
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 
@@ -105,6 +108,18 @@ def no_engine(patch):
     patch.setattr(page, "read_engine", lambda: Engine("", b""))
 
 
+def trained(patch):
+    """The policy of the catalog stands for one that was trained, which takes minutes."""
+    policy = POLICIES["velocity"]
+    judged = SimpleNamespace(speed_error=0.1, turn_error=0.1, max_speed=0.2, max_turn=0.3, falls=0, speed=[0.2])
+
+    def conduct(training, folder, **_):
+        path = save_policy(policy, folder / f"{training.name}{SUFFIX}")
+        return SimpleNamespace(policy=policy, path=path, table_judgement=judged, judgement=judged)
+
+    patch.setattr(train, "conduct", conduct)
+
+
 CASES = {
     "demo": [Case(words=("demo", "--no-browser", "--out", "made/page.html"), doubles=short_walks)],
     "reproduce": [Case(words=("reproduce", "--anew", "--jobs", "1", "--out", "made"))],
@@ -132,6 +147,7 @@ CASES = {
             own=("parts/*", "search.json", "study.json", "*/parts/*", ".*"),
         )
     ],
+    "train": [Case(words=("train", "velocity", "--out", "made"), doubles=trained)],
     "import": [Case(words=("import", "it.urdf", "--out", "made/it.toml"), needs=("it.urdf",))],
     "export": [
         Case(words=("export", "--format", "urdf", "--out", "made/it")),
@@ -139,7 +155,7 @@ CASES = {
     ],
     "size": [
         Case(
-            words=("size", "caiman", "belly_crawl", "--family", "Dynamixel XW 12 V RS-485", "--out", "made"),
+            words=("size", "caiman", "belly_crawl", "--family", "Feetech STS 12 V", "--out", "made"),
             doubles=once(size, "size"),
         )
     ],

@@ -64,7 +64,7 @@ def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, sa
 
 
 def test_sizing_writes_the_servos_that_are_enough_and_a_robot_that_has_them(tmp_path, capsys):
-    family = "Dynamixel XW 12 V RS-485"
+    family = "Feetech STS 12 V"
     assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0
     out, folder = capsys.readouterr().out, tmp_path / "export" / "caiman_size"
     assert family in out
