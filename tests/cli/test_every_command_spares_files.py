@@ -32,7 +32,9 @@ from suchus.apps.laboratory.engine import Engine
 from suchus.core.files import load, save
 from suchus.core.writing import MANIFEST
 from suchus.hardware import Rig, straight, write_map, write_wiring
+from suchus.hardware.calibrate import FitEstimate
 from suchus.hardware.emulator import Emulator, MemoryPort
+from suchus.hardware.identification import QUANTITIES, ServoIdentification
 from suchus.robot.control.policy import SUFFIX, save_policy
 from suchus.robot.gaits import GAITS
 from suchus.robot.policies import POLICIES
@@ -120,6 +122,13 @@ def trained(patch):
     patch.setattr(train, "conduct", conduct)
 
 
+def held(patch):
+    """A log of a robot in the air shows one servo."""
+    estimates = {name: FitEstimate(value=1.0, half=0.1) for name in QUANTITIES}
+    shown = {"LF_yaw": ServoIdentification(**estimates, unexplained=0.1)}
+    patch.setattr(calibrate, "identify_servos", lambda *_: (shown, {}))
+
+
 CASES = {
     "demo": [Case(words=("demo", "--no-browser", "--out", "made/page.html"), doubles=short_walks)],
     "reproduce": [Case(words=("reproduce", "--anew", "--jobs", "1", "--out", "made"))],
@@ -185,6 +194,13 @@ CASES = {
     ],
     "calibrate": [
         Case(words=("calibrate", "log", "driven/record.nc", "--out", "made/servos.csv"), needs=("driven",)),
+        Case(
+            words=(
+                "calibrate", "log", "driven/record.nc", "--held", "--out", "made/servos.csv", "--json", "made/json",
+            ),
+            needs=("driven",),
+            doubles=held,
+        ),
         Case(
             words=("calibrate", "zero", "--hardware", "hardware.toml", "--out", "made/zeroed.toml"),
             needs=("hardware.toml",),
