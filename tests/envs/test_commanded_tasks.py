@@ -9,7 +9,7 @@ pytest.importorskip("gymnasium", reason="not installed: pip install 'suchus[gym]
 
 import gymnasium
 
-from suchus.apps.envs import TASKS, Breaks, Commands, CrocodileVectorEnv, GaitFollower, play, reading_columns
+from suchus.apps.envs import TASKS, Breaks, CommandRanges, CrocodileVectorEnv, GaitFollower, play, reading_columns
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.control.observation import FAILURE_READINGS, observation_layout
 from suchus.robot.design import layout
@@ -37,7 +37,7 @@ def test_velocity_is_known_to_gymnasium_and_shows_what_a_robot_measures():
 
 
 def test_commands_are_drawn_anew_and_seen_in_parts_of_the_greatest():
-    task = replace(STRIDER, noise=0.0, commands=Commands(forward=(0.1, 0.4), turn=(-0.5, 0.5), interval=0.2))
+    task = replace(STRIDER, noise=0.0, commands=CommandRanges(forward=(0.1, 0.4), turn=(-0.5, 0.5), interval=0.2))
     env = CrocodileVectorEnv(2, task)
     seen, _ = env.reset(seed=5)
     commands = []
@@ -52,7 +52,7 @@ def test_commands_are_drawn_anew_and_seen_in_parts_of_the_greatest():
 
 
 def test_who_walks_as_commanded_is_paid_more_than_who_stands():
-    task = replace(STRIDER, noise=0.0, delay=0.0, commands=Commands(forward=(0.19, 0.2), turn=(-0.01, 0.01)))
+    task = replace(STRIDER, noise=0.0, delay=0.0, commands=CommandRanges(forward=(0.19, 0.2), turn=(-0.01, 0.01)))
     env = CrocodileVectorEnv(2, task)
     walked = play(task, follower(task, env), episodes=2, steps=100)
     stood = play(task, lambda seen: np.zeros((len(seen), len(layout(task.robot).servos))), episodes=2, steps=100)
@@ -93,7 +93,7 @@ def test_noise_depends_on_the_seed_alone():
 
 
 def test_the_heading_error_grows_where_a_turn_is_commanded_and_not_made():
-    task = replace(STRIDER, noise=0.0, commands=Commands(forward=(0.1, 0.2), turn=(0.29, 0.3)))
+    task = replace(STRIDER, noise=0.0, commands=CommandRanges(forward=(0.1, 0.2), turn=(0.29, 0.3)))
     env = CrocodileVectorEnv(1, task)
     env.reset(seed=0)
     for _ in range(20):
@@ -117,7 +117,7 @@ def test_a_robot_is_told_of_its_fault_from_its_time_on():
 
 
 def test_the_tasks_in_water_take_commands_too():
-    env = gymnasium.make("suchus/Swim-v0", commands=Commands(forward=(0.05, 0.1)))
+    env = gymnasium.make("suchus/Swim-v0", commands=CommandRanges(forward=(0.05, 0.1)))
     seen, _ = env.reset(seed=0)
     assert seen.shape == (108,)
     env.step(env.action_space.sample())
@@ -131,6 +131,6 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(InvalidDesign, match=r"delay is 0\.013 s; whole control periods"):
         replace(TASKS["Crawl"], delay=0.013)
     with pytest.raises(InvalidDesign, match=r"commands\.forward"):
-        Commands(forward=(0.2, 0.1))
+        CommandRanges(forward=(0.2, 0.1))
     assert "failure" in FAILURE_READINGS
     assert GAITS["low_crawl"] == VELOCITY.gait

@@ -10,7 +10,7 @@ from suchus.sim.land import Backlash, Ground, Limp, Locked, Push, Run, simulate
 from suchus.sim.land.batch import Beginning
 from suchus.sim.land.loop import Loop
 from suchus.sim.land.readings import thin
-from suchus.sim.record import EFFORT
+from suchus.sim.record import EFFORT, ELECTRICAL
 
 COARSE = 0.005
 PUSH = Push(force=(0.0, 12.0, 0.0), at=0.05, duration=0.1)
@@ -46,7 +46,7 @@ def test_samples_that_are_not_kept_change_none_of_those_that_are(run, robots):
     all_kept, few = (simulate(runs, duration=0.3, timestep=COARSE, sample_stride=every) for every in (1, 3))
     kept = thin(all_kept, 3)
     for name in kept.data_vars:
-        if name in EFFORT:
+        if name in EFFORT or name in ELECTRICAL:
             np.testing.assert_allclose(kept[name].values, few[name].values, rtol=1e-12, atol=1e-12, err_msg=str(name))
         elif name == "foot_roll":  # a ball rolls by its turn from one kept sample to the next
             np.testing.assert_allclose(kept[name].values, few[name].values, rtol=0.0, atol=1e-6, err_msg=str(name))

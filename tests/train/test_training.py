@@ -78,7 +78,7 @@ def test_a_network_starts_from_the_table_of_another_policy(trained, tmp_path):
     assert "tracking_error" in training.readings
 
 
-@pytest.mark.slow(reason="a training of a file and an experiment by the command line take more than ten seconds")
+@pytest.mark.slow("a training of a file and an experiment by the command line take more than ten seconds")
 def test_a_hexapod_of_a_file_is_trained_and_walks_in_an_experiment(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "six_legs.toml"
@@ -147,7 +147,7 @@ def test_motion_is_that_of_the_record():
 
 
 def test_a_loss_of_nothing_and_of_a_fall():
-    moved = training_module.Motion(np.array([0.1, 0.0]), np.array([0.2, 0.0]), np.array([False, True]))
+    moved = training_module.TrackedMotion(np.array([0.1, 0.0]), np.array([0.2, 0.0]), np.array([False, True]))
     assert tracking_loss(moved, 0.1, 0.2, 0.1, 0.2).tolist() == [0.0, 3.0]
     assert tracking_loss(moved, 0.0, 0.0, 0.1, 0.2)[0] == pytest.approx(2.0)
 

@@ -75,7 +75,7 @@ QUANTITIES: Mapping[str, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
+class _LoggedMotion:
     """Means over the control periods of a log, all arrays of shape (period, servo)."""
 
     current: np.ndarray
@@ -194,7 +194,7 @@ def _remedy(robot: Robot) -> str:
     )
 
 
-def _motion(record: xr.Dataset, robot: Robot, period: float) -> _Motion:
+def _motion(record: xr.Dataset, robot: Robot, period: float) -> _LoggedMotion:
     """Return means over the control periods of a log.
 
     The mean speed of a period follows from its two angles, its mean acceleration from the two speeds that servos tell.
@@ -212,7 +212,7 @@ def _motion(record: xr.Dataset, robot: Robot, period: float) -> _Motion:
     goal_speed = np.gradient(goal, period, axis=0)
     goal_acceleration = np.gradient(goal_speed, period, axis=0)
     instruments = tuple(0.5 * (values[1:] + values[:-1]) for values in (goal, goal_speed, goal_acceleration))
-    return _Motion(
+    return _LoggedMotion(
         current=record.servo_current.values[1:], angle=angle, speed=speed, acceleration=acceleration, load=load,
         goal_speed=instruments[1], goal_acceleration=instruments[2], goal_load=_load(robot, *instruments),
         is_known=is_known,
@@ -259,7 +259,7 @@ class _Balance:
         i: place of the servo.
     """
 
-    def __init__(self, motion: _Motion, i: int) -> None:
+    def __init__(self, motion: _LoggedMotion, i: int) -> None:
         """Fit the current by the motion, the torque constant being unknown."""
         speed, goal_speed = motion.speed[:, i], motion.goal_speed[:, i]
         self.current, self.load = motion.current[:, i], motion.load[:, i]
@@ -334,7 +334,7 @@ def _smooth(values: Float[np.ndarray, "period term"], is_used: Bool[np.ndarray, 
 
 
 def _identify_loop(
-    motion: _Motion, goal: Float[np.ndarray, " sample"], i: int, period: float, torque_constant: FitEstimate
+    motion: _LoggedMotion, goal: Float[np.ndarray, " sample"], i: int, period: float, torque_constant: FitEstimate
 ) -> dict[str, FitEstimate]:
     """Return delay and play of servo i; not numbers where the motion does not show them.
 

@@ -13,7 +13,7 @@ from suchus.apps.envs.policies import (
 )
 from suchus.apps.envs.senses import SENSES, reading_columns, senses
 from suchus.apps.envs.single import CrocodileEnv, action_space, observation_space
-from suchus.apps.envs.task import AnyGoal, Breaks, Commands, Goal, Landing, Pushes, Rewards, Task, remaining
+from suchus.apps.envs.task import AnyGoal, Breaks, CommandRanges, Goal, Landing, Pushes, Rewards, Task, remaining
 from suchus.apps.envs.vector import CrocodileVectorEnv
 
 register()
@@ -26,7 +26,7 @@ __all__ = [
     "TASKS",
     "AnyGoal",
     "Breaks",
-    "Commands",
+    "CommandRanges",
     "ControllerPolicy",
     "CrocodileEnv",
     "CrocodileVectorEnv",

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, get_args
 
-from suchus.apps.envs.task import AnyGoal, Breaks, Commands, Goal, Landing, Pushes, Rewards, Task
+from suchus.apps.envs.task import AnyGoal, Breaks, CommandRanges, Goal, Landing, Pushes, Rewards, Task
 from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.robot.control.observation import FAILURE_READINGS, ROBOT_READINGS
 from suchus.robot.design import Robot
@@ -63,7 +63,7 @@ TASKS: Mapping[str, Task] = MappingProxyType(
         "Velocity": replace(
             _CRAWL,
             gait=GAITS["low_crawl"],
-            commands=Commands(),
+            commands=CommandRanges(),
             readings=tuple(name for name in ROBOT_READINGS if name not in FAILURE_READINGS),
             rewards=Rewards(
                 forward=0.0,
@@ -126,7 +126,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "rewards": (Rewards,),
         "breaks": (Breaks, type(None)),
         "pushes": (Pushes, type(None)),
-        "commands": (Commands, type(None)),
+        "commands": (CommandRanges, type(None)),
         "lake": (Lake, type(None)),
         "water": (str, Slice, Space),
         "swim": (Gait, type(None)),

@@ -317,7 +317,7 @@ class Breaks:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Commands:
+class CommandRanges:
     """Forward speeds and turning rates that are commanded, drawn anew from time to time."""
 
     forward: tuple[float, float] = (0.0, 0.2)
@@ -443,7 +443,7 @@ class Task:
     """Gait of a ``swimming`` start, whose wave the clock follows; None: that of (20), see ``water.swim_of``."""
     goal: AnyGoal | None = None
     """The goal, at which the episode ends; None: no goal."""
-    commands: Commands | None = None
+    commands: CommandRanges | None = None
     """Speeds and turning rates that are commanded; None: no commands."""
     shows_failures: bool = False
     """Whether the observation says which servo has failed."""

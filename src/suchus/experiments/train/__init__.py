@@ -3,6 +3,6 @@
 from suchus.experiments.train.conduct import TrainingResult, train
 from suchus.experiments.train.judging import COMMANDS, Judgement, judge
 from suchus.experiments.train.spec import TASKS, Training
-from suchus.experiments.train.tracking import Motion, motion
+from suchus.experiments.train.tracking import TrackedMotion, motion
 
-__all__ = ["COMMANDS", "TASKS", "Judgement", "Motion", "Training", "TrainingResult", "judge", "motion", "train"]
+__all__ = ["COMMANDS", "TASKS", "Judgement", "TrackedMotion", "Training", "TrainingResult", "judge", "motion", "train"]

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from suchus.core.errors import Doubtful
 from suchus.core.progress import Progress, silent
-from suchus.experiments.train.tracking import Motion, motion
+from suchus.experiments.train.tracking import TrackedMotion, motion
 from suchus.robot.control import Control, Learned
 from suchus.robot.control.policy import Policy
 from suchus.robot.design import Robot
@@ -32,7 +32,7 @@ class Judgement:
     """Commanded speed [m/s]."""
     turn: Float[np.ndarray, " command"]
     """Commanded turning rate [rad/s]."""
-    reached: Motion
+    reached: TrackedMotion
     """What was reached."""
     max_speed: float = field(default=1.0)
     """Greatest commanded speed [m/s]."""

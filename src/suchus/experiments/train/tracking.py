@@ -15,7 +15,7 @@ MIN_UPRIGHT = 0.3
 """Vertical component of the root's upward axis below which a robot has fallen [-]."""
 
 
-class Motion(NamedTuple):
+class TrackedMotion(NamedTuple):
     """Mean motion of each run in a window of time."""
 
     speed: Float[np.ndarray, " run"]
@@ -26,7 +26,7 @@ class Motion(NamedTuple):
     """Whether it has fallen over, or diverged, before the end of the window, (run,) [-]."""
 
 
-def motion(record: xr.Dataset, start: float, end: float) -> Motion:
+def motion(record: xr.Dataset, start: float, end: float) -> TrackedMotion:
     """Return how fast each run moves and turns.
 
     The heading is fitted by a straight line over time, so that the swing of a cycle does not count. The speed is the
@@ -51,11 +51,15 @@ def motion(record: xr.Dataset, start: float, end: float) -> Motion:
     upright = rotation.upward(window.orientation.transpose("run", "time", "wxyz").values)[..., 2]
     has_fallen |= (np.where(np.isfinite(upright), upright, -1.0) < MIN_UPRIGHT).any(axis=1)
     speed = np.where(has_fallen, 0.0, distance / (time[-1] - time[0]))
-    return Motion(speed, np.where(has_fallen, 0.0, turn), has_fallen)
+    return TrackedMotion(speed, np.where(has_fallen, 0.0, turn), has_fallen)
 
 
 def tracking_loss(
-    measured_motion: Motion, speed: np.ndarray | float, turn: np.ndarray | float, max_speed: float, max_turn: float
+    measured_motion: TrackedMotion,
+    speed: np.ndarray | float,
+    turn: np.ndarray | float,
+    max_speed: float,
+    max_turn: float,
 ) -> Float[np.ndarray, " run"]:
     """Return the sizes of the errors of speed and turning rate over their greatest commands, summed [-].
 
