@@ -14,7 +14,7 @@ import pytest
 from suchus.apps.cli import main
 from suchus.apps.laboratory import page as laboratory
 from suchus.apps.laboratory.engine import Engine, NoEngine
-from suchus.apps.laboratory.link import page_settings
+from suchus.apps.laboratory.link import constant_level, page_settings
 from suchus.apps.report import lesson_server, lessons
 from suchus.apps.report.lesson_server import LessonServer
 from suchus.apps.report.lessons import Lesson, write_lessons
@@ -89,7 +89,7 @@ def test_the_settings_of_a_link_make_the_run(lesson):
     clocks = np.linspace(0.0, 1.5, 50)
     robot, start = lesson.runs[0].robot, lesson.laboratory
     for run in lesson.runs:
-        settings = dict(parse_qsl(page_settings(run, start, start_level=lessons._level(lesson.runs[0]))))
+        settings = dict(parse_qsl(page_settings(run, start, start_level=constant_level(lesson.runs[0]))))
         shown = {name: float(text) for name, text in settings.items() if name in GAIT_KNOBS}
         assert all(GAIT_KNOBS[name].low <= value <= GAIT_KNOBS[name].high for name, value in shown.items())
         gait = start.with_numbers(**{name: value * GAIT_KNOBS[name].scale for name, value in shown.items()})

@@ -29,15 +29,24 @@ def page_settings(run: Run, start_gait: Gait, *, start_level: float | None = Non
         value, start = (_in_range(GAIT_KNOBS[name], gait.number(name)) for gait in (run.gait, start_gait))
         if value != start:
             settings[name] = _shown(value)
-    level = None if run.lake is None else run.lake.level
-    world = {"friction": (run.ground.friction_scale, 1.0), "uphill": (run.ground.uphill, 0.0)}
-    for name, (number, start) in (world | {"level": (level, start_level)}).items():
-        if number != start:
+    world: dict[str, tuple[float | None, float | None]] = {
+        "friction": (run.ground.friction_scale, 1.0),
+        "uphill": (run.ground.uphill, 0.0),
+        "level": (constant_level(run), start_level),
+    }
+    for name, (number, start_number) in world.items():
+        if number != start_number:
             scale = _WORLD_KNOBS[name].scale if name in _WORLD_KNOBS else 1.0
             settings[name] = "none" if number is None else _shown(number / scale)
     if limp := [fault.joint for fault in run.faults if isinstance(fault, Limp)]:
         settings["faults"] = ",".join(f"{joint}:limp" for joint in limp)
     return urlencode(settings)
+
+
+def constant_level(run: Run) -> float | None:
+    """Return the level of the water of a run [m]; None if the run has no water, or its level changes."""
+    level = None if run.lake is None else run.lake.level
+    return None if isinstance(level, tuple) else level
 
 
 def _in_range(knob: Knob, value: float) -> float:

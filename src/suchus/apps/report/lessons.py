@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from suchus.apps.laboratory.engine import NoEngine, read_engine
-from suchus.apps.laboratory.link import page_settings
+from suchus.apps.laboratory.link import constant_level, page_settings
 from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import versions, write
 from suchus.core.progress import Progress, silent, staged
@@ -95,7 +95,7 @@ def write_lessons(
         pages[lesson.name] = page(lesson, following, page_progress)
     for name, lesson in laboratories.items():
         assert lesson.laboratory is not None
-        pages[name] = laboratory_page(lesson.runs[0].robot, lesson.laboratory, level=_level(lesson.runs[0]))
+        pages[name] = laboratory_page(lesson.runs[0].robot, lesson.laboratory, level=constant_level(lesson.runs[0]))
     return [write(file, pages[file.stem]) for file in lesson_files(folder, selection)]
 
 
@@ -157,12 +157,8 @@ def _laboratory_addresses(lesson: Lesson) -> list[str]:
     if lesson.laboratory is None or laboratory_absence():
         return []
     start_gait = lesson.laboratory
-    settings = [page_settings(run, start_gait, start_level=_level(lesson.runs[0])) for run in lesson.runs]
+    settings = [page_settings(run, start_gait, start_level=constant_level(lesson.runs[0])) for run in lesson.runs]
     return [f"{_laboratory_name(lesson)}.html{'#' if text else ''}{text}" for text in settings]
-
-
-def _level(run: Run) -> float | None:
-    return None if run.lake is None else run.lake.level
 
 
 def _index_of_farthest(distances: Sequence[float]) -> int:
