@@ -98,7 +98,8 @@ converge: .venv/.dev # every measure at its time step, a half and a quarter of i
 bench: .venv/.dev
 	@for f in bench/bench_*.py; do echo; echo "== $$f"; $(PY) "$$f" || exit 1; done
 
-docs: .venv/.docs
+docs: .venv/.docs # with the laboratory in one page, unless npm is missing
+	@$(PY) tools/fetch_engine.py || true
 	NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict
 	@echo site/index.html
 

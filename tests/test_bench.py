@@ -1,10 +1,13 @@
 """Every bench runs, in its short form, and prints ratios; no test depends on what they are."""
 
+import importlib.util
 import os
 import re
+import shutil
 from pathlib import Path
 
 import pytest
+from tests.laboratory.page_modules import engine_folder
 
 ROOT = Path(__file__).parent.parent
 BENCHES = {path.stem: path for path in sorted((ROOT / "bench").glob("bench_*.py"))}
@@ -14,6 +17,7 @@ RATIOS = {
     "bench_kinematics": r"leg\.inverse .* \d+\.\d+ of leg\.forward",
     "bench_lake": r"swimming +\d+ +\d+\.\d+",
     "bench_land": r"\d+ environments .* ratio \d+\.\d+",
+    "bench_page": r"over that at full speed: ratio \d+\.\d+",
     "bench_portable": r"of processor time: ratio \d+\.\d+",
     "bench_study": r"beside the bare physics \d+\.\d+",
     "bench_wet": r"wading +[\d.]+ +ratio \d+\.\d+",
@@ -34,11 +38,26 @@ def test_every_bench_but_that_of_a_card_has_a_ratio():
     assert {*RATIOS, "bench_gpu"} == {*BENCHES}
 
 
+def has_browser_and_engine():
+    """Whether this machine can time the laboratory in one page."""
+    browser = shutil.which("chromium") or shutil.which("chromium-browser")
+    return bool(browser) and engine_folder() is not None and importlib.util.find_spec("playwright") is not None
+
+
 @pytest.mark.parametrize("name", RATIOS)
 def test_a_bench_prints_ratios(name, run_bench):
+    if name == "bench_page" and not has_browser_and_engine():
+        pytest.skip("chromium, playwright or the engine of the page is not on this machine")
     done = run_bench(name)
     assert done.returncode == 0, done.stderr
     assert re.search(RATIOS[name], done.stdout), done.stdout
+
+
+def test_the_bench_of_the_page_says_what_is_missing(run_bench, tmp_path):
+    done = run_bench("bench_page", PATH=str(tmp_path), XDG_CACHE_HOME=str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("\n") == 1
+    assert "is not timed" in done.stdout
 
 
 def test_the_bench_of_a_card_says_that_there_is_none(run_bench):

@@ -11,7 +11,7 @@ from mkdocs.structure.pages import Page
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from pages import age, article, gallery, links, reference
+from pages import age, article, gallery, laboratory, links, reference
 from pages.code import rooms as rooms_of_code
 from pages.mathml import Formulas
 from pages.stated import page as stated_page
@@ -38,15 +38,15 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "questions.md": stated_page("questions"),
         "verdicts.md": article.verdicts(),
     }
-    for path, text in (made | reference.pages() | gallery.pages()).items():
+    for path, text in (made | reference.pages() | gallery.pages() | laboratory.pages()).items():
         files.append(File.generated(config, path, content=text))
     return files
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Mark what is old, keep the formulas of a page aside, and lead links to files to the pages made of them."""
+    """Mark what is old, keep formulas aside, and lead links to the laboratory and to the pages made of files."""
     _formulas[page.file.src_uri] = Formulas()
-    return _formulas[page.file.src_uri].take(links.built(age.marked(markdown)))
+    return _formulas[page.file.src_uri].take(links.built(laboratory.linked(age.marked(markdown))))
 
 
 def on_page_content(html: str, page: Page, **_: Any) -> str:

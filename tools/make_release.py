@@ -1,10 +1,11 @@
 """Build wheel and sdist, and try them as somebody would who has nothing else. ``make release`` calls it.
 
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
-``suchus doctor``, ``suchus demo --no-browser``, one experiment, all of them in their quick forms, and the Dockerfile's
-steps. It is built twice, to the same bytes, with the versions of ``release/pins.txt``, and a bill of materials
-stands beside it. A commit whose files or tag say another version is refused first; with ``--check`` nothing else is
-done, and with ``--tag`` the commit is tagged. Nothing is published; docs/publishing.md says how that is done.
+``suchus doctor``, ``suchus demo --no-browser``, ``suchus page`` with the wheel's engine, one experiment, all of them in
+their quick forms, and the Dockerfile's steps. It is built twice, to the same bytes, with the versions of
+``release/pins.txt``, and a bill of materials stands beside it. A commit whose files or tag say another version is
+refused first; with ``--check`` nothing else is done, and with ``--tag`` the commit is tagged. Nothing is published;
+docs/publishing.md says how that is done.
 """
 
 import shutil
@@ -18,8 +19,14 @@ import fetch_engine
 from release import distributions, dockerfile
 from release.environment import ROOT, Environment, Failed, run
 
-_WORDS = (("doctor",), ("demo", "--no-browser"), ("run", "displacement", "--quick"), ("reproduce", "--quick"))
-_LEFT = ("suchus_demo.html", "out/displacement/outcome.json", "out/report.html")
+_WORDS = (
+    ("doctor",),
+    ("demo", "--no-browser"),
+    ("page", "strider"),
+    ("run", "displacement", "--quick"),
+    ("reproduce", "--quick"),
+)
+_LEFT = ("suchus_demo.html", "strider.html", "out/displacement/outcome.json", "out/report.html")
 
 
 def main(words: Sequence[str] = ()) -> int:

@@ -1,7 +1,7 @@
 """Take the pictures of the viewer's pages and of a replay, still and moving, in docs/pictures, with a browser.
 
-Usage: python tools/viewer_pictures.py [live] [replay] [animal] [file] [film]; needs the extra viewer, playwright and
-chromium.
+Usage: python tools/viewer_pictures.py [live] [replay] [animal] [file] [film] [page]; needs the extra viewer,
+playwright, chromium, and for the laboratory in one page its engine.
 """
 
 import shutil
@@ -20,11 +20,13 @@ from playwright.sync_api import Page, sync_playwright
 
 from lighter import lighten
 from suchus.animals.capture import Camera, SyntheticAnimal, film_animal
+from suchus.apps.laboratory.page import laboratory_page
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.pages import LivePage, ReplayPage, Viewer
 from suchus.apps.viewer.replay import place_animal, takes
 from suchus.core.files import save
-from suchus.robot.gaits import GAITS
+from suchus.robot.gaits import GAITS, default_gait
+from suchus.robot.motion import START
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 from suchus.visual.replay import replay as replay_file
@@ -36,6 +38,12 @@ _SLOWEST = 0.05  # playback speed [-]: hardly anything moves while the picture i
 _PATIENCE = 300.0  # [s]; a browser without a graphics card draws a picture every few seconds
 _SHOWN = 6.9  # [s]; time at which the replay as one file is shown
 _PAINTED = 20.0  # [s] until scene and plots have been drawn
+_SIMULATE = """(time) => {
+  let before = -1, reached = 0;
+  while (reached < time - 1e-6 && reached > before) { before = reached; reached = laboratory.page.advance(time); }
+  laboratory.state.time = reached;
+  laboratory.redraw();
+}"""
 _FRAMES = 60  # of the moving picture [-]
 
 
@@ -171,8 +179,25 @@ def take_film() -> Path:
     return PICTURES / "crawl.webp"
 
 
-ONE_FILE = {"file": take_file, "film": take_film}
-"""How pictures of a replay as one file are taken, by the word on the command line."""
+def take_page() -> Path:
+    """Take the picture of the laboratory in one page after two cycles, and return its path."""
+    robot = ROBOTS["caiman"]
+    text = laboratory_page(robot, default_gait(robot))
+    with TemporaryDirectory() as folder, _browser(width=1280, height=800) as tab:
+        file = Path(folder) / "caiman.html"
+        file.write_text(text, encoding="utf-8")
+        tab.set_default_timeout(1000 * _PATIENCE)
+        tab.emulate_media(reduced_motion="reduce")
+        tab.goto(file.as_uri())
+        tab.wait_for_function("document.body.dataset.live === 'ready'")
+        tab.evaluate(_SIMULATE, START + 2 * default_gait(robot).period + 0.1)
+        tab.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        tab.screenshot(path=PICTURES / "page.png")
+    return lighten(PICTURES / "page.png")
+
+
+ONE_FILE = {"file": take_file, "film": take_film, "page": take_page}
+"""How pictures of pages that are one file are taken, by the word on the command line."""
 
 
 if __name__ == "__main__":

@@ -1,17 +1,22 @@
 """The pages that are made of the code say what the code says."""
 
+from pathlib import Path
+
 import pytest
 
 pytest.importorskip("latex2mathml")
 
 import suchus
-from pages import article, gallery, reference
+from pages import article, gallery, laboratory, reference
 from pages.code import exported, papers, rooms
 from pages.mathml import Formulas
 from pages.references import named
 from pages.stated import page as stated_page
+from suchus.apps.laboratory.engine import Engine, NoEngine
 from suchus.article.paper import CLAIMS, ERRATA
 from suchus.experiments.catalog import EXPERIMENTS
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize(
@@ -99,3 +104,28 @@ def test_formulas_become_mathml_and_nothing_else_changes():
     assert html.count("<math ") == 2
     assert "<mfrac>" in html
     assert 'alttext="\\frac{a}{b}"' in html
+
+
+@pytest.fixture
+def fresh_laboratory():
+    laboratory.pages.cache_clear()
+    yield
+    laboratory.pages.cache_clear()
+
+
+@pytest.mark.usefixtures("fresh_laboratory")
+def test_the_site_leads_to_the_laboratory_only_where_it_has_one(monkeypatch, capsys):
+    def absent(*_):
+        raise NoEngine("there is none.")
+
+    build = laboratory.laboratory_page
+    monkeypatch.setattr(laboratory, "laboratory_page", absent)
+    assert laboratory.pages() == {}
+    assert "there is none." in capsys.readouterr().err
+    assert laboratory.linked(f"a\n{laboratory.MARK}\nb") == "a\n\nb"
+    laboratory.pages.cache_clear()
+    monkeypatch.setattr(laboratory, "laboratory_page", lambda *given: build(*given, engine=Engine("", b"")))
+    assert "caiman" in laboratory.pages()["laboratory.html"]
+    assert "(laboratory.html)" in laboratory.linked(laboratory.MARK)
+    for name in ("index", "page"):
+        assert (DOCS / f"{name}.md").read_text(encoding="utf-8").count(f"\n{laboratory.MARK}\n") == 1

@@ -12,7 +12,9 @@ from packaging.requirements import Requirement
 import make_release
 from release import distributions
 from release.environment import PINNED, ROOT, Environment, Failed, run
+from suchus.apps.laboratory.engine import BINARY, SCRIPT
 
+ENGINE_FILES = (SCRIPT, BINARY)
 SOURCES = {"src/suchus/__init__.py", "src/suchus/article/verdict/claims.json"}
 
 
@@ -178,11 +180,17 @@ def test_two_builds_at_other_places_and_times_have_the_same_bytes(tmp_path, monk
         for name in distributions.run(["git", "ls-files", "-z"], cwd=ROOT).split("\0")[:-1]:
             (checkout / name).parent.mkdir(parents=True, exist_ok=True)
             (checkout / name).write_bytes((ROOT / name).read_bytes())  # written now, so that times differ
+        (checkout / distributions.ENGINE).mkdir(parents=True)
+        for name in ENGINE_FILES:  # git does not know them, and the wheel carries them
+            (checkout / distributions.ENGINE / name).write_bytes(name.encode())
         monkeypatch.setenv("TZ", zone)
         monkeypatch.setattr(distributions, "PINNED", checkout / "tools" / "release" / "pins.txt")
         found.append(distributions.digests(*distributions.build(tools, tmp_path / f"of {place}", checkout)))
     assert len(found[0]) == 2
     assert distributions.unlike(*found) == ""
+    with zipfile.ZipFile(next((tmp_path / "of here").glob("*.whl"))) as wheel:
+        folder = distributions.ENGINE.removeprefix("src/")
+        assert [wheel.read(f"{folder}/{name}").decode() for name in ENGINE_FILES] == [*ENGINE_FILES]
     (checkout / "src" / "suchus" / "__init__.py").write_text("other = 1\n")
     other = distributions.digests(*distributions.build(tools, tmp_path / "other", checkout))
     assert ".whl" in distributions.unlike(found[0], other)

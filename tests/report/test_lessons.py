@@ -1,14 +1,27 @@
 """Lessons: what is right is what was measured, and each page plays offline on a phone."""
 
+import http.client
+import json
 import re
 import shutil
+import socket
 from dataclasses import replace
+from urllib.parse import parse_qsl
 
+import numpy as np
 import pytest
 
 from suchus.apps.cli import main
-from suchus.apps.report import lessons
+from suchus.apps.laboratory import page as laboratory
+from suchus.apps.laboratory.engine import Engine, NoEngine
+from suchus.apps.laboratory.link import constant_level, page_settings
+from suchus.apps.report import lesson_server, lessons
+from suchus.apps.report.lesson_server import LessonServer
 from suchus.apps.report.lessons import Lesson, write_lessons
+from suchus.apps.viewer.knobs import GAIT_KNOBS
+from suchus.robot.design.ground import Ground
+from suchus.robot.motion.movement import cycle_targets
+from suchus.sim.land import Lake, Run
 
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
@@ -17,10 +30,16 @@ def short(lesson: Lesson) -> Lesson:
     return replace(lesson, runs=lesson.runs[::2][:2], cycles=0.3)
 
 
+ADDRESS = "http://192.0.2.7:8080/"
+
+
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lessons")
-    return write_lessons(folder, [short(one) for one in lessons.lessons()[:2]])
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (lessons, laboratory):
+            patch.setattr(module, "read_engine", lambda: Engine("", b""))
+        return write_lessons(folder, [short(one) for one in lessons.lessons()[:2]], address=ADDRESS)
 
 
 def measured(page):
@@ -31,14 +50,116 @@ def measured(page):
 
 
 def test_a_page_has_its_runs_a_slider_and_a_question_whose_answer_was_measured(written):
-    index, first, second = (path.read_text(encoding="utf-8") for path in written)
+    index, first, second = (path.read_text(encoding="utf-8") for path in written[:3])
     found, right = measured(first)
     assert list(found) == ["0% of its crawl", "50% of its crawl"]
     assert found[right] == max(found.values())
     assert 'id="chosen" type="range" min="0" max="1"' in first
     assert 'href="timing.html"' in first
     assert "Next:" not in second
-    assert index.count(".html") == 2
+    assert index.count(".html") == 4
+
+
+def test_the_sheet_names_address_question_and_choices_of_each_lesson(written):
+    sheet = written[3].read_text(encoding="utf-8")
+    assert written[3].name == "sheet.html"
+    for lesson in map(short, lessons.lessons()[:2]):
+        assert f"<code>{ADDRESS}{lesson.name}.html</code>" in sheet
+        assert lesson.question in sheet
+        assert all(run.label in sheet for run in lesson.runs)
+    assert sheet.count("I expect:") == 2
+
+
+def test_each_run_leads_to_the_laboratory_with_its_settings(written):
+    assert [path.name for path in written[4:]] == ["laboratory_caiman_belly_crawl.html"]
+    first, second = (path.read_text(encoding="utf-8") for path in written[1:3])
+    name = written[4].name
+    assert addresses(first) == [f"{name}#trunk_bend=0&tail_bend=0", f"{name}#trunk_bend=35&tail_bend=22.5"]
+    assert addresses(second) == [name, f"{name}#axis_lag=0.25"]
+    assert first.index('id="question"') < first.index('id="scene"') < first.index("Answer below")
+
+
+def addresses(page):
+    return json.loads(re.search(r'<script id="addresses" type="application/json">(.*?)</script>', page)[1])
+
+
+@pytest.mark.parametrize("lesson", lessons.lessons(), ids=lambda lesson: lesson.name)
+def test_the_settings_of_a_link_make_the_run(lesson):
+    """Sliders stop at the end of their range, so that each value lies in it; the numbers make the run's gait."""
+    clocks = np.linspace(0.0, 1.5, 50)
+    robot, start = lesson.runs[0].robot, lesson.laboratory
+    for run in lesson.runs:
+        settings = dict(parse_qsl(page_settings(run, start, start_level=constant_level(lesson.runs[0]))))
+        shown = {name: float(text) for name, text in settings.items() if name in GAIT_KNOBS}
+        assert all(GAIT_KNOBS[name].low <= value <= GAIT_KNOBS[name].high for name, value in shown.items())
+        gait = start.with_numbers(**{name: value * GAIT_KNOBS[name].scale for name, value in shown.items()})
+        assert np.abs(cycle_targets(robot, gait, clocks) - cycle_targets(robot, run.gait, clocks)).max() < 1e-9
+        assert float(settings.get("friction", 1.0)) == run.ground.friction_scale
+        assert settings.get("faults", "") == ",".join(f"{fault.joint}:limp" for fault in run.faults)
+        assert "level" not in settings
+
+
+def test_a_link_sets_water_and_slope():
+    lesson = lessons.lessons()[0]
+    run = Run(
+        robot=lesson.runs[0].robot, gait=lesson.laboratory, lake=Lake(level=0.25), ground=Ground(uphill=np.radians(6.0))
+    )
+    assert page_settings(run, lesson.laboratory) == "uphill=6&level=250"
+    dry = replace(run, lake=None, ground=Ground())
+    assert page_settings(dry, lesson.laboratory, start_level=0.3) == "level=none"
+
+
+def test_without_the_engine_the_lessons_have_no_laboratory(tmp_path, monkeypatch):
+    def absent():
+        raise NoEngine("there is none.")
+
+    monkeypatch.setattr(lessons, "read_engine", absent)
+    index, first, _ = write_lessons(tmp_path, [short(lessons.lessons()[0])])
+    assert "laboratory_" not in index.read_text()
+    assert "laboratory_" not in first.read_text()
+    assert lessons.laboratory_absence() == "there is none."
+
+
+def answer(server, path, method="GET"):
+    connection = http.client.HTTPConnection("127.0.0.1", server._server.server_port, timeout=10.0)
+    connection.request(method, path)
+    response = connection.getresponse()
+    body = response.read()
+    connection.close()
+    return response.status, response.headers["Content-Type"], body
+
+
+def test_the_server_gives_the_pages_and_nothing_else(tmp_path):
+    index, other, secret = (tmp_path / name for name in ("index.html", "a.html", "letter.txt"))
+    for file in (index, secret):
+        file.write_text(file.name)
+    with LessonServer([index, other], 0) as server:
+        server.start()
+        assert re.fullmatch(r"http://[\d.]+:\d+/", server.address)
+        assert answer(server, "/") == (200, "text/html; charset=utf-8", b"index.html")
+        assert answer(server, "/index.html?x") == answer(server, "/")
+        assert answer(server, "/index.html", "HEAD")[::2] == (200, b"")
+        for path in ("/letter.txt", "/a.html", "/../letter.txt", "/%2e%2e/letter.txt", str(secret), "/lessons/"):
+            assert answer(server, path)[:2] == (404, "text/plain; charset=utf-8"), path
+        assert answer(server, "/", "POST")[0] == 501
+        other.write_text("later")
+        assert answer(server, "/a.html")[2] == b"later"
+
+
+def test_a_computer_without_a_network_names_itself(monkeypatch):
+    monkeypatch.setattr(lesson_server, "_UNROUTED", ("no address", 9))
+    assert lesson_server.network_address() == "127.0.0.1"
+
+
+def test_a_taken_port_is_said_before_anything_is_computed(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(lessons, "simulate", lambda *_, **__: pytest.fail("computed"))
+    with socket.socket() as taken:
+        taken.bind(("", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        assert main(["lessons", "--serve", "--port", port, "--out", str(tmp_path / "new")]) == 2
+    assert f"on port {port}" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
 
 
 @pytest.mark.parametrize(
@@ -54,7 +175,7 @@ def test_what_is_right_follows_from_the_distances(right, far, which):
     assert right(far) == which
 
 
-@pytest.mark.parametrize("words", [["--out", "taken"], ["--robot", "caiman"], ["now"]])
+@pytest.mark.parametrize("words", [["--out", "taken"], ["--robot", "caiman"], ["now"], ["--port", "-1"]])
 def test_bad_words_are_refused_before_anything_is_computed(words, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "taken").write_text("")
@@ -94,11 +215,17 @@ def plays(opened, address):
     until(page, "window.suchus && window.suchus.mass() !== null")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     first = page.locator("#told").inner_text()
+    assert page.locator("#chosen").is_disabled()
+    page.locator("#expected").select_option(index=2)
+    expected = page.locator("#expected").input_value()
     page.locator("#chosen").fill("1")
     until(page, f"document.getElementById('told').textContent !== {first!r}")
     right = page.evaluate("document.querySelector('#answer strong').textContent").removesuffix(".")
     page.get_by_role("radio", name=right, exact=True).check()
     assert page.locator("#answer").get_attribute("open") is not None
-    assert page.locator("#said").inner_text() == "That is what was measured."
+    guess = "You expected it." if expected == right else f"You expected: {expected}."
+    assert page.locator("#said").inner_text() == f"That is what was measured. {guess}"
+    if page.locator("#laboratory").count():
+        assert ".html#" in page.locator("#laboratory").get_attribute("href")
     assert (asked, said) == ([address], [])
     page.close()

@@ -136,7 +136,10 @@ COMMANDS = (
         output="page",
     ),
     Subcommand(
-        "lessons", "[--out DIR]", "write five lessons for a class, that play offline", "suchus.apps.cli.lessons:lessons"
+        "lessons",
+        "[--out DIR] [--serve]",
+        "write five lessons for a class, that play offline",
+        "suchus.apps.cli.lessons:lessons",
     ),
     Subcommand(
         "study",

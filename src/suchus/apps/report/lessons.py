@@ -9,15 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
+from suchus.apps.laboratory.engine import NoEngine, read_engine
+from suchus.apps.laboratory.link import constant_level, page_settings
+from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import versions, write
 from suchus.core.progress import Progress, silent, staged
 from suchus.robot.control import Swimming
 from suchus.robot.design.ground import Ground
 from suchus.robot.gaits import GAITS
-from suchus.robot.motion import START
+from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
-from suchus.visual.replay.page import environment, render_template
+from suchus.visual.replay.page import embed_json, environment, render_template
 
 _TIMESTEP, _SAMPLE_INTERVAL = (
     0.005,
@@ -51,6 +54,8 @@ class Lesson:
     """Explanation, which holds whichever run is the answer."""
     command: str
     """Command to continue with."""
+    laboratory: Gait | None = None
+    """Gait in which the page of the laboratory begins that shows the same runs; None for a lesson without it."""
 
 
 def lessons() -> tuple[Lesson, ...]:
@@ -58,29 +63,56 @@ def lessons() -> tuple[Lesson, ...]:
     return _bending(), _timing(), _joints(), _friction(), _waves()
 
 
-def write_lessons(folder: Path, selection: Sequence[Lesson] = (), progress: Progress = silent) -> list[Path]:
-    """Write lessons and a page that lists them, and return the paths, the list first.
+def write_lessons(
+    folder: Path, selection: Sequence[Lesson] = (), progress: Progress = silent, *, address: str = ""
+) -> list[Path]:
+    """Write lessons, a page that lists them, a sheet to print and the laboratory; return the paths, the list first.
+
+    The laboratory is left out where its engine is not on this machine, see ``laboratory_absence``.
 
     Args:
         folder: folder for the pages; made where it is not there.
         selection: the lessons; all if empty.
         progress: called with the share that is done, 0 to 1.
+        address: address of the folder for the class, with a slash at its end, as the sheet says it; empty if it has
+            none.
 
     Raises:
         Unwritable: the place cannot be written to.
     """
     selection = selection or lessons()
-    listing = environment().get_template("lessons.html").render(lessons=selection, version=versions()["suchus"])
-    pages = {"index": listing}
+    templates, version = environment(), versions()["suchus"]
+    laboratories = _laboratory_lessons(selection)
+    links = [(f"{name}.html", f"{lesson.runs[0].robot.name}") for name, lesson in laboratories.items()]
+    pages = {
+        "index": templates.get_template("lessons.html").render(lessons=selection, laboratories=links, version=version),
+        "sheet": templates.get_template("lesson_sheet.html").render(
+            lessons=selection, address=address, version=version
+        ),
+    }
     for i, (lesson, following) in enumerate(zip(selection, [*selection[1:], None], strict=True)):
         page_progress = staged(progress, lesson.name, i / len(selection), (i + 1) / len(selection))
         pages[lesson.name] = page(lesson, following, page_progress)
+    for name, lesson in laboratories.items():
+        assert lesson.laboratory is not None
+        pages[name] = laboratory_page(lesson.runs[0].robot, lesson.laboratory, level=constant_level(lesson.runs[0]))
     return [write(file, pages[file.stem]) for file in lesson_files(folder, selection)]
 
 
 def lesson_files(folder: Path, selection: Sequence[Lesson] = ()) -> list[Path]:
     """Return where ``write_lessons`` writes, in the order in which it does."""
-    return [folder / f"{name}.html" for name in ("index", *(lesson.name for lesson in selection or lessons()))]
+    selection = selection or lessons()
+    names = ("index", *(lesson.name for lesson in selection), "sheet", *_laboratory_lessons(selection))
+    return [folder / f"{name}.html" for name in names]
+
+
+def laboratory_absence() -> str:
+    """Return in a sentence why lessons are written without the laboratory; empty if they are written with it."""
+    try:
+        read_engine()
+    except NoEngine as error:
+        return str(error)
+    return ""
 
 
 def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = silent) -> str:
@@ -95,6 +127,7 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
         float(run_record.centre_of_mass[-1, 0] - run_record.centre_of_mass[0, 0]) for run_record in run_records
     ]
     labels = [run.label for run in lesson.runs]
+    addresses = _laboratory_addresses(lesson)
     return render_template(
         "lesson.html", run_records[0], first_run.robot, other_records=run_records[1:], choice=lesson.choice,
         labels=labels,
@@ -102,7 +135,30 @@ def page(lesson: Lesson, following: Lesson | None = None, progress: Progress = s
         right=lesson.right(distances), because=lesson.because,
         numbers=[f"{value:.2f} m".replace("-", "−") for value in distances],
         heading=f"forward in {duration:g} s", command=lesson.command, following=following,
+        addresses=addresses, addresses_json=embed_json(addresses),
     )  # fmt: skip
+
+
+def _laboratory_lessons(selection: Sequence[Lesson]) -> dict[str, Lesson]:
+    """Return the pages of the laboratory that lessons need, by file name, each with the first lesson that needs it."""
+    if laboratory_absence():
+        return {}
+    named = {_laboratory_name(lesson): lesson for lesson in reversed(selection) if lesson.laboratory is not None}
+    return dict(reversed(named.items()))
+
+
+def _laboratory_name(lesson: Lesson) -> str:
+    assert lesson.laboratory is not None
+    return f"laboratory_{lesson.runs[0].robot.name}_{lesson.laboratory.name}"
+
+
+def _laboratory_addresses(lesson: Lesson) -> list[str]:
+    """Return for each run the link to the laboratory with its settings; none where there is no laboratory."""
+    if lesson.laboratory is None or laboratory_absence():
+        return []
+    start_gait = lesson.laboratory
+    settings = [page_settings(run, start_gait, start_level=constant_level(lesson.runs[0])) for run in lesson.runs]
+    return [f"{_laboratory_name(lesson)}.html{'#' if text else ''}{text}" for text in settings]
 
 
 def _index_of_farthest(distances: Sequence[float]) -> int:
@@ -139,6 +195,7 @@ def _bending() -> Lesson:
         "step gets longer, though the leg moves no more than before. Look at the tracks: how long is a "
         "step in each run?",
         command="suchus run displacement",
+        laboratory=gait,
     )
 
 
@@ -160,6 +217,7 @@ def _timing() -> Lesson:
         "way. Half a cycle late the spine turns the leg forwards while its foot stands, and takes away "
         "what the leg gives. Where it takes more than the leg gives, the robot goes backwards.",
         command="suchus view",
+        laboratory=gait,
     )
 
 
@@ -183,6 +241,7 @@ def _joints() -> Lesson:
         "arrows, which are the forces on the feet: a leg can lose its push, or its load, which other feet "
         "and the belly then take. Does the robot still go straight?",
         command="suchus run joint_faults",
+        laboratory=gait,
     )
 
 
@@ -212,6 +271,7 @@ def _friction() -> Lesson:
         "If both were scaled alike and nothing else counted, the distance would not change at all. Look "
         "which feet slide, in which direction, and what the tail does.",
         command="suchus run terrain --quick",
+        laboratory=gait,
     )
 
 
@@ -243,4 +303,5 @@ def _waves() -> Lesson:
         "swims backwards. How many waves there are decides how much of the pressing is along the body and "
         "how much only to the sides.",
         command="suchus run swim_sweep --quick",
+        laboratory=gait,
     )

@@ -146,7 +146,7 @@ def environment() -> Environment:
     return templates
 
 
-def embed_json(meta: Mapping[str, Any]) -> Markup:
+def embed_json(meta: Mapping[str, Any] | Sequence[Any]) -> Markup:
     """Return values as JSON that is safe inside a page's script."""
     return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
