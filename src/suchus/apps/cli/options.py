@@ -115,7 +115,7 @@ def _policy_words(experiment: Experiment, name: str, words: Sequence[str]) -> li
         is_policy = Path(value).suffix == SUFFIX or (value not in GAITS and value in POLICIES)
         if word == "--control" and is_policy:
             if not hasattr(experiment, "policy"):
-                raise BadCommand(f"the experiment {name} takes no policy; displacement does.")
+                raise BadCommand(f"the experiment {name} takes no policy; displacement and policies do.")
             words[i] = "--policy"
     return words
 

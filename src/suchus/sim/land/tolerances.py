@@ -59,7 +59,7 @@ class Tolerances:
         masses = rng.uniform(1.0 - self.mass, 1.0 + self.mass, len(run.robot.axis) + len(run.robot.girdles))
         return replace(
             run,
-            robot=_weighted(run.robot, masses.tolist()),
+            robot=with_masses(run.robot, masses.tolist()),
             ground=replace(run.ground, friction_scale=float(friction) * run.ground.friction_scale),
             zero_error=tuple(zero_error.tolist()),
             play=tuple(play.tolist()),
@@ -71,7 +71,7 @@ class Tolerances:
         return [self.draw_run(run, robot_seed) for run in runs for robot_seed in seeds]
 
 
-def _weighted(robot: Robot, factors: list[float]) -> Robot:
+def with_masses(robot: Robot, factors: list[float]) -> Robot:
     """Return a robot with other masses: a factor for each segment of the axis, then one for each girdle's limbs."""
     axis = tuple(_segment(segment, factor) for segment, factor in zip(robot.axis, factors, strict=False))
     limbs = factors[len(robot.axis) :]

@@ -1,0 +1,1 @@
+"""Does a trained policy follow its commands, and what does it bear?"""

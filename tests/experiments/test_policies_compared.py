@@ -1,0 +1,158 @@
+"""The experiment ``policies``: errors of a made record, gaits by hand, robots without a policy, policies told."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.bodies import six
+
+from suchus.apps.cli.options import choose
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.policies.experiment import Calibration, Case, comparison
+from suchus.experiments.experiment import Outcome
+from suchus.robot.control import Coordinated, Learned, Walking
+from suchus.robot.motion import START
+from suchus.robot.policies import POLICIES, save_policy
+from suchus.robot.robots import ROBOTS
+
+QUESTION = EXPERIMENTS["policies"]
+CALIBRATION = Calibration(speed=0.2, turn_per_asymmetry=0.4, max_rate=2.0)
+
+
+def made_record(robots=6):
+    """Return a record of two arms, two commands and a heavier robot, with errors that are known."""
+    cases = [("undisturbed", 0.2, 0.0), ("undisturbed", 0.1, 0.5), ("heavier", 0.2, 0.0)]
+    commands = np.array([[speed, turn] for _, speed, turn in cases])
+    spread = 0.002 * np.arange(robots)
+    speed = np.stack([commands[:, :1] + 0.01 + spread, commands[:, :1] - 0.05 - spread])
+    turn = np.stack([commands[:, 1:] + 0.0 * spread, commands[:, 1:] - 0.1 + 0.0 * spread])
+    fallen = np.zeros(speed.shape)
+    fallen[1, 1, 0] = 1.0
+    dims = ("arm", "case", "robot")
+    return xr.Dataset(
+        {"speed": (dims, speed), "turn": (dims, turn), "fallen": (dims, fallen), "cost": (dims, 1.0 + speed)},
+        coords={
+            "arm": ["policy", "open_loop"],
+            "condition": ("case", [case[0] for case in cases]),
+            "commanded_speed": ("case", commands[:, 0]),
+            "commanded_turn": ("case", commands[:, 1]),
+        },
+        attrs={"max_speed": 0.25, "max_turn": 0.5, "goal": 0.2},
+    )
+
+
+def test_errors_falls_and_intervals_of_a_made_record():
+    values = {name: measure.value for name, measure in QUESTION.measure(made_record()).items()}
+    median = 0.002 * 2.5
+    assert values["speed_error_policy"] == pytest.approx((0.01 + median) / 0.25)
+    assert values["speed_error_policy_low"] == pytest.approx(0.01 / 0.25)
+    assert values["speed_error_policy_high"] == pytest.approx(0.02 / 0.25)
+    assert values["turn_error_policy"] == 0.0
+    assert values["turn_error_open_loop"] == pytest.approx(0.2)
+    assert values["tracking_error_open_loop"] == pytest.approx(0.5 * ((0.05 + median) / 0.25 + 0.2))
+    assert values["error_excess_open_loop"] == pytest.approx(0.5 * (0.04 / 0.25 + 0.2))
+    assert values["error_excess_heavier_open_loop_low"] == pytest.approx(0.5 * (0.04 / 0.25 + 0.2))
+    assert (values["within_policy"], values["within_open_loop"]) == (1.0, 0.0)
+    assert values["fallen_policy"] == values["fallen_heavier_open_loop"] == 0.0
+    assert values["fallen_open_loop"] == pytest.approx(1 / 6)
+    assert values["cost_policy"] == pytest.approx(1.21 + median)
+
+
+def test_fewer_than_six_robots_decide_nothing():
+    values = {name: measure.value for name, measure in QUESTION.measure(made_record(5)).items()}
+    assert np.isnan(values["error_excess_open_loop_low"])
+    assert comparison(values, "error_excess_open_loop") == "open"
+
+
+@pytest.mark.parametrize(("low", "high", "word"), [(0.01, 0.2, "better"), (-0.2, -0.01, "worse"), (-0.1, 0.1, "open")])
+def test_an_interval_on_one_side_of_zero_decides(low, high, word):
+    assert comparison({"x": 0.0, "x_low": low, "x_high": high}, "x") == word
+
+
+def test_the_words_follow_the_numbers():
+    question = replace(
+        QUESTION, arms=("policy", "open_loop"), speeds=(2 / 3,), disturbances=("heavier",), faults=(), turns=(0.0, 1.0)
+    )
+    record = made_record()
+    words = explained(question, record)
+    assert "better than the gait by hand" in words
+    assert "error is smaller undisturbed and with more mass" in words
+    assert "17% with the gait by hand under some command" in words
+    swapped = record.isel(arm=[1, 0]).assign_coords(arm=["policy", "open_loop"])
+    words = explained(question, swapped)
+    assert "worse than the gait by hand" in words
+    assert "error is larger undisturbed and with more mass" in words
+
+
+def explained(question, record):
+    return question.explain({name: measure.value for name, measure in question.measure(record).items()})
+
+
+def test_the_gait_by_hand_gets_frequency_and_strokes_in_proportion():
+    gait, control = QUESTION._control("open_loop", Case("undisturbed", 0.1, 0.05), CALIBRATION)
+    assert gait.period == pytest.approx(2.0 * QUESTION.judged_policy.gait.period)
+    assert isinstance(control, Walking)
+    assert control.asymmetry == pytest.approx(0.05 / (0.4 * 0.5))
+    gait, control = QUESTION._control("open_loop", Case("undisturbed", 9.0, -9.0), CALIBRATION)
+    assert gait.period == pytest.approx(QUESTION.judged_policy.gait.period / 2.0)
+    assert control.asymmetry == -0.5
+    assert isinstance(QUESTION._control("feedback", Case("undisturbed", 0.1, 0.3), CALIBRATION)[1], Coordinated)
+
+
+def test_all_controls_get_the_same_robots():
+    case = Case("heavier", 0.1, 0.0)
+    runs = [QUESTION._run(*QUESTION._control(arm, case, CALIBRATION), "heavier", 7) for arm in QUESTION.arm_names()]
+    assert len(runs) == 4
+    assert len({run.robot for run in runs}) == len({run.zero_error for run in runs}) == 1
+    gait, control = QUESTION._control("policy", case, CALIBRATION)
+    light = QUESTION._run(gait, control, "undisturbed", 7)
+    assert runs[0].robot.mass == pytest.approx(1.1 * light.robot.mass)
+    assert QUESTION._run(gait, control, "slippery", None).ground.friction_scale == 0.5
+
+
+def test_a_policy_that_reads_failures_walks_told_and_untold():
+    reading = replace(POLICIES["velocity_untold"], readings=("command", "failure"), layers=(), actions=(), spans=())
+    question = replace(QUESTION, fault_policy=reading)
+    assert question.arm_names() == ("policy", "fault_policy", "fault_policy_told", "open_loop", "feedback")
+    case = Case("limp_LF_yaw", 0.1, 0.0)
+    told, untold = (question._control(f"fault_policy{end}", case, CALIBRATION)[1] for end in ("_told", ""))
+    assert told == Learned(policy=reading, forward=0.1, failures=((START, "LF_yaw"),))
+    assert untold == Learned(policy=reading, forward=0.1)
+    assert QUESTION.arm_names() == ("policy", "fault_policy", "open_loop", "feedback")
+
+
+def test_each_robot_gets_its_own_policy_or_a_sentence(tmp_path):
+    assert QUESTION.for_robot(ROBOTS["strider"]).judged_policy == POLICIES["velocity_strider"]
+    swimmer = QUESTION.for_robot(ROBOTS["swimmer"])
+    assert swimmer.judged_policy == POLICIES["swim_swimmer"]
+    assert "slippery" not in {case.condition for case in swimmer.cases()}
+    assert swimmer.arm_names() == ("policy", "open_loop")
+    with pytest.raises(UnsuitedRobot, match="suchus train velocity --robot"):
+        QUESTION.quick().for_robot(six()).run()
+    path = save_policy(POLICIES["velocity_untold"], tmp_path / "mine.npz")
+    chosen = choose(QUESTION, "policies", ["--policy", str(path)])
+    assert chosen.experiment.judged_policy == POLICIES["velocity_untold"]
+    assert choose(QUESTION, "policies", ["--control", "velocity"]).experiment.policy == POLICIES["velocity"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "part"),
+    [
+        ({"arms": ("open_loop",)}, "'policy' is needed"),
+        ({"disturbances": ("rain",)}, "there is heavier"),
+        ({"joints": ("LF_nose",)}, "there is LF_yaw"),
+        ({"robots": 0}, "robots"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(fields, part):
+    with pytest.raises(InvalidDesign, match=part):
+        replace(QUESTION, **fields)
+
+
+def test_it_swims_too():
+    outcome = QUESTION.quick().for_robot(ROBOTS["swimmer"]).run()
+    assert isinstance(outcome, Outcome)
+    assert outcome.measures["fallen_policy"].value == 0.0
+    assert outcome.measures["speed_error_policy"].value < outcome.measures["speed_error_open_loop"].value + 0.5
