@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import suchus
 from suchus.article.paper import CLAIMS
 from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
@@ -64,3 +65,11 @@ def test_the_caption_names_the_orange_line_only_where_it_is_drawn(strokes, bends
     ]
     assert bool(orange) == has_line
     assert ("orange line" in caption(figure)) == has_line
+
+
+def test_the_displacement_exactly_as_designed_is_that_of_a_crawl_of_the_design(quick_outcome):
+    outcome = quick_outcome("displacement")
+    walked = displacement(suchus.crawl(suchus.ROBOTS["caiman"], suchus.GAITS["belly_crawl"], cycles=1))
+    designed = outcome.measures["forward_coordinated_designed"].value
+    assert designed == pytest.approx(float(walked.sel(xyz="x").squeeze()), abs=1e-9)
+    assert f"exactly as designed {designed:.2f} against" in outcome.decides

@@ -213,6 +213,9 @@ class Displacement(TwoGroups):
                 measures |= estimated(name, forward["coordinated"] / forward[control], "-")
         if POLICY in forward:
             measures |= estimated("gain_policy", forward[POLICY] - forward["coordinated"], "m")
+        designed = displacement_of(record).sel(xyz="x").values
+        for arm, distance in zip(record.condition.values, designed, strict=True):
+            measures[f"forward_{arm}_designed"] = Measure(float(distance), "m")
         measures |= ends("ratio_on_map", _ratio(record), "-")
         measures["forward_antiphase"] = Measure(float(record.late_coordinated.min()), "m")
         if record.sizes["pitch"]:

@@ -25,7 +25,7 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
-from suchus.experiments.train import Motion, motion
+from suchus.experiments.train import TrackedMotion, motion
 from suchus.robot.control import Control, Coordinated, HeadingRule, Learned, Policy, Walking
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.scale import coarse_step, control_period
@@ -516,7 +516,7 @@ def _fall_text(name: str, arms: Sequence[str]) -> str:
 
 
 def _gather(
-    reached: Motion, cost: np.ndarray, cells: Sequence[tuple[int, int, int]], shape: tuple[int, int, int]
+    reached: TrackedMotion, cost: np.ndarray, cells: Sequence[tuple[int, int, int]], shape: tuple[int, int, int]
 ) -> xr.Dataset:
     """Return what was reached over arm, case and robot, NaN where nobody walked.
 
