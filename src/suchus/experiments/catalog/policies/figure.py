@@ -58,13 +58,13 @@ def draw_tracking(record: Any) -> Figure:
     with styled():
         figure, axes = panels(1, len(arms), width=3.4 * max(len(arms), 2), height=4.0, sharex=True, sharey=True)
         for ax, arm in zip(axes[0], arms, strict=True):
-            colour, marker = _ARM_STYLES[arm]
+            colour, _ = _ARM_STYLES[arm]
             reached = grid.sel(arm=arm)
             ax.plot(grid.commanded_speed, grid.commanded_turn, "+", color="black", markersize=11, label="commanded")
             ax.plot(
                 reached.speed.values.ravel(),
                 reached.turn.values.ravel(),
-                marker,
+                "o",
                 color=colour,
                 markersize=4.5,
                 alpha=0.6,
