@@ -422,7 +422,7 @@ class Policies(Experiment):
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
-        """Return tracking errors, falls and costs of transport of each control, and each condition's, with intervals."""
+        """Return tracking errors, falls and costs of each control, over the commands and in each condition."""
         speed_error, turn_error = _errors(record)
         error = 0.5 * (speed_error + turn_error)
         undisturbed = record.condition == UNDISTURBED
