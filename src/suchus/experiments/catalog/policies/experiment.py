@@ -56,7 +56,7 @@ class Case(NamedTuple):
     """A condition and a command."""
 
     condition: str
-    """``undisturbed``, one of ``DISTURBANCES``, or ``FAULT_JOINT``."""
+    """``undisturbed``, one of ``DISTURBANCES``, or ``limp_LF_yaw`` and its like, of a fault and a joint."""
     speed: float
     """Commanded forward speed [m/s]."""
     turn: float
