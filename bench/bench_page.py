@@ -16,7 +16,7 @@ from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]
-SLOWDOWN = 6  # of the processor [-]
+SLOWDOWN = in_form(6, 2)  # of the processor [-]
 WATCHED = in_form(10.0, 1.0)  # wall time in which pictures are counted [s]
 SIMULATED = in_form(6.0, 0.5)  # time of the robots whose computing is timed [s]
 PATIENCE = 300_000  # [ms]

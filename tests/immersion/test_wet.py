@@ -328,6 +328,12 @@ def test_bad_numbers_and_names_get_a_sentence(words):
     assert words in str(caught.value)
 
 
+def test_a_model_whose_geoms_have_no_names_says_so():
+    nameless = scene(BALL).replace('name="ball"', "")
+    with pytest.raises(UnknownName, match="there is no geom named 'fin'; no geom there has a name"):
+        wet(nameless, coefficients={"fin": IDEAL})
+
+
 MODELS = {
     "has a fluid of MuJoCo's own (option density 1000": scene(BALL, 'density="1000"'),
     "PGS or the noslip iterations": scene(BALL, 'solver="PGS"'),

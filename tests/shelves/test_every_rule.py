@@ -130,6 +130,9 @@ def mutated(rule: Rule, numeric: bool) -> Iterator[tuple[str, Rule, float]]:
         else:
             heard = tuple(replace(other, carries=True) if other == rung else other for other in rule.rungs)
             yield f"{rule.claim}: {rung.model} heard", replace(rule, rungs=heard), 1.0
+    for meaning in rule.interpretations:
+        rest = tuple(other for other in rule.interpretations if other != meaning)
+        yield f"{rule.claim}: {meaning.name} unheard", replace(rule, interpretations=rest), 1.0
     for factor in (1.0 - _OFF, 1.0 + _OFF) if rule.rungs else ():
         yield f"{rule.claim}: settled x {factor}", replace(rule, settled=factor * rule.settled), 1.0
     clauses = (*rule.holds, *(rule.control.needs if rule.control else ()))

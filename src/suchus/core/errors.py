@@ -114,7 +114,8 @@ class UnknownName(SuchusError, KeyError):
         self.available = tuple(available)
         matches = get_close_matches(str(name)[:_LONG_WORD], self.available, n=1)
         hint = f" Did you mean {matches[0]!r}?" if matches else ""
-        super().__init__(f"there is no {kind} named {name!r}; there is {', '.join(self.available)}.{hint}")
+        existing = f"there is {', '.join(self.available)}" if self.available else f"no {kind} there has a name"
+        super().__init__(f"there is no {kind} named {name!r}; {existing}.{hint}")
 
 
 class AmbiguousName(SuchusError, ValueError):

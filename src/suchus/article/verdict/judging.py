@@ -211,7 +211,7 @@ def judge(
     if rule.claim not in claims:
         raise UnknownName("claim", rule.claim, claims)
     claim = claims[rule.claim]
-    needed = rule.needs.union(rule.named_in_reason, *(other.needs for other in rule.by_others))
+    needed = rule.needs.union(rule.named_in_reason, *(other.needs for other in rule.interpreted_rules))
     missing = sorted(needed - set(measures))
     if missing:
         raise IncompatibleRecord(
@@ -287,7 +287,7 @@ def _words_by_reading(
     """Return the rule in each meaning of the article's words with its verdict's word, that of the rule itself first."""
     own_word = _word(rule, claim, _value(rule, measures, model_voices), measures, model_voices)
     return [(rule, own_word)] + [
-        (other, _word(other, claim, float(measures[other.measure]), measures, ())) for other in rule.by_others
+        (other, _word(other, claim, float(measures[other.measure]), measures, ())) for other in rule.interpreted_rules
     ]
 
 

@@ -230,8 +230,8 @@ class Rule:
     word: ``MEASURE_NAME_apart`` [-]."""
     interpretation: str = ""
     """Name of the meaning of the article's words that the rule's own measures have; empty where there is one alone."""
-    others: tuple[Interpretation, ...] = ()
-    """Other meanings; where the statement holds by one and not by another, the word is ``depends on the reading``."""
+    interpretations: tuple[Interpretation, ...] = ()
+    """Other meanings; a statement that holds by one and not by another gets the word ``depends on the reading``."""
     form: str = ".3g"
     """How the rungs' numbers are written, see ``Reading``."""
     unswept: str = ""
@@ -262,9 +262,9 @@ class Rule:
         return measures | bounds | {f"{name}{end}" for name in self.spread for end in ("_low", "_high")}
 
     @property
-    def by_others(self) -> tuple["Rule", ...]:
+    def interpreted_rules(self) -> tuple["Rule", ...]:
         """The rule in each other meaning of the article's words, with the same clauses."""
-        return tuple(self._interpreted(other) for other in self.others)
+        return tuple(self._interpreted(other) for other in self.interpretations)
 
     def _interpreted(self, other: Interpretation) -> "Rule":
         """Return the rule in another meaning of the article's words."""
@@ -282,7 +282,7 @@ class Rule:
             holds=clauses,
             spread=tuple(map(other.measure, self.spread)),
             interpretation=other.name,
-            others=(),
+            interpretations=(),
             why="",
         )
 

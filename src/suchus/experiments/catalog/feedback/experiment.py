@@ -105,7 +105,7 @@ class Feedback(Experiment):
     needs = ("limbs", "trunk")
     judged_settings = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_minima: ClassVar[Mapping[str, float]] = {
-        "starts": 16, "compared_starts": 6, "cycles": 6, "hold": 2.0, "after": 5,
+        "starts": 16, "compared_starts": 6, "cycles": 12, "hold": 2.0, "after": 5,
     }  # fmt: skip
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -117,7 +117,7 @@ class Feedback(Experiment):
     the exact interval begins above 95 %."""
     compared_starts: int = 32
     """Number of random initial limb phases of each other law [-]: the first of those of the judged laws."""
-    cycles: int = 6
+    cycles: int = 12
     """Simulated duration of each start [cycle]."""
     hold: float = 2.0
     """Duration for which the limbs must stay coordinated until the end [cycle]."""

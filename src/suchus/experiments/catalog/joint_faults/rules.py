@@ -82,7 +82,7 @@ def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
         spread=(measure_name,),
         of=DEFAULT_SPREAD_OF,
         interpretation=_LIMP,
-        others=(_LOCKED,),
+        interpretations=(_LOCKED,),
         why=(_limbs_only_explanation(joint) if group == "limbs_only" else "") + explanation,
     )
 
@@ -144,7 +144,7 @@ RULES = (
         spread=("support_share_limp", "com_rise_limp", "foot_free_limp"),
         of=DEFAULT_SPREAD_OF,
         interpretation=_LIMP,
-        others=(_LOCKED,),
+        interpretations=(_LOCKED,),
     ),
     Rule(
         claim="fault_tolerance",
@@ -163,7 +163,7 @@ RULES = (
         spread=tuple(f"gain_{joint}_limp_one" for joint in _TOLERATED_JOINTS),
         of=DEFAULT_SPREAD_OF,
         interpretation=_LIMP,
-        others=(_LOCKED,),
+        interpretations=(_LOCKED,),
         why=_tolerance_explanation(),
     ),
 )
@@ -262,6 +262,7 @@ EXAMPLES: Examples = {
         (_loss("front_yaw", "coordinated", -0.226), "same sense"),
         (_loss("front_yaw", "coordinated", -0.330), "same sense"),
         (_loss("front_yaw", "coordinated", -0.337), "contradicted"),
+        (_loss("front_yaw", "coordinated", -0.22, locked=-0.4), "depends on the reading"),
     ],
     "fault_hind_yaw_limbs_only": [
         (_loss("hind_yaw", "limbs_only", -0.75), "fitted"),
@@ -273,6 +274,7 @@ EXAMPLES: Examples = {
         (_loss("hind_yaw", "limbs_only", -0.756), "same sense"),
         (_loss("hind_yaw", "limbs_only", -0.505), "same sense"),
         (_loss("hind_yaw", "limbs_only", -0.495), "contradicted"),
+        (_loss("hind_yaw", "limbs_only", -0.75, locked=-0.3), "depends on the reading"),
     ],
     "fault_hind_yaw_coordinated": [
         (_loss("hind_yaw", "coordinated", -0.17), "reproduced"),
@@ -284,6 +286,7 @@ EXAMPLES: Examples = {
         (_loss("hind_yaw", "coordinated", -0.176), "same sense"),
         (_loss("hind_yaw", "coordinated", -0.330), "same sense"),
         (_loss("hind_yaw", "coordinated", -0.337), "contradicted"),
+        (_loss("hind_yaw", "coordinated", -0.17, locked=-0.4), "depends on the reading"),
     ],
     **{
         f"fault_front_pitch_{arm}": [
@@ -296,6 +299,7 @@ EXAMPLES: Examples = {
             (_loss("front_pitch", arm, -1.006), "same sense"),
             (_loss("front_pitch", arm, -0.91), "same sense"),
             (_loss("front_pitch", arm, -0.89), "contradicted"),
+            (_loss("front_pitch", arm, -1.0, locked=-0.5), "depends on the reading"),
         ]
         for arm in ("limbs_only", "coordinated")
     },
@@ -311,6 +315,7 @@ EXAMPLES: Examples = {
         (_loss("hind_pitch", "limbs_only", -0.395), "contradicted"),
         (_loss("hind_pitch", "limbs_only", -0.695), "same sense"),
         (_loss("hind_pitch", "limbs_only", -0.705), "contradicted"),
+        (_loss("hind_pitch", "limbs_only", -0.55, locked=-0.8), "depends on the reading"),
         (_loss("hind_pitch", "limbs_only", float("nan")), "not testable"),
     ],
     "fault_hind_pitch_coordinated": [

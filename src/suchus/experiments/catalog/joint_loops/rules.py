@@ -21,7 +21,7 @@ RULES = (
             Clause("droop_taken_pid", ">=", 0.1, "an integral that takes less than a tenth of the droop away is none"),
         ),
         interpretation="integral limited as in our design",
-        others=(
+        interpretations=(
             Interpretation(name="integral limited by the servo's torque alone", measures=("_pid", "_pid_unlimited")),
         ),
         why="With the greatest integral gain tried {load_error_pid:deg.2f} degrees remain under {load:.2f} N m, the "

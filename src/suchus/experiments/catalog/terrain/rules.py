@@ -39,7 +39,7 @@ RULES = (
         control=ControlGroup(group="low_crawl", why="Section II.B: one structure or the other, on the same grounds."),
         spread=("erect_open_loop_ahead_share",),
         interpretation="by distance",
-        others=(
+        interpretations=(
             Interpretation(
                 name="by the fraction kept of its own distance on even ground",
                 measures=("open_loop_ahead_share", "open_loop_kept_share"),
