@@ -5,6 +5,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -44,13 +45,28 @@ def test_what_waits_is_a_hang_and_what_the_code_raises_passes(place, monkeypatch
     def breaks(place, dice):
         raise IndexError("a bare one")
 
+    def works(place, dice):
+        while True:
+            pass
+
     monkeypatch.setattr("hostile.PATIENCE", 0.2)
     monkeypatch.setattr("hostile._LOOK", 0.1)
-    monkeypatch.setattr("hostile.KINDS", (waits, breaks))
+    monkeypatch.setattr("hostile.KINDS", (waits, breaks, works))
     with pytest.raises(Hang, match="waits"):
         place.case(0)
     with pytest.raises(IndexError, match="bare"):
         place.case(1)
+    with pytest.raises(Hang, match="of a processor"):
+        place.case(2)
+
+
+def test_what_other_threads_compute_is_no_hang(place, monkeypatch):
+    monkeypatch.setattr("hostile.PATIENCE", 1.0)
+    place.idle, place.ran = time.monotonic(), time.thread_time()
+    place._alarm(signal.SIGPROF, None)  # the clock of the whole process is over, this thread's is not
+    place.ran -= 1.1
+    with pytest.raises(Hang, match="of a processor"):
+        place._alarm(signal.SIGPROF, None)
 
 
 @pytest.mark.slow("more than ten seconds: a thousand cases of the long form")
