@@ -80,7 +80,7 @@ def read_poses(
     return Tracks(
         time=time,
         points=points,
-        position=upright(position, points, path.name) if position.shape[-1] == 3 else position,
+        position=upright(position, points) if position.shape[-1] == 3 else position,
         unit="px",
         source=path.name,
     )

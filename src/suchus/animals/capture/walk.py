@@ -16,6 +16,7 @@ from suchus.animals.capture.names import check_feet, check_trunk, unused_text
 from suchus.animals.capture.pauses import longest_bout
 from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
+from suchus.animals.capture.surface import level_surface
 from suchus.animals.capture.swings import Clock, walk_clock
 from suchus.animals.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking
 from suchus.core.checks import require
@@ -85,6 +86,10 @@ class Walk:
     """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
     Phase 0 is where a gait of this footfall begins: LF starts to swing."""
 
+    slope: float = 0.0
+    """Angle of the surface on which the animal walks against level, pi/2 on a wall, pi on a ceiling; 0 where it is
+    nearly level or not seen [rad]."""
+
     def value(self, name: str) -> float:
         """Return a number without its spread."""
         return self.numbers[name].value
@@ -119,7 +124,8 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     check_tracks(tracks)
     check_feet(tracks)
     unused = unused_text(tracks.points)
-    tracks, pauses = longest_bout(tracks)
+    surface = level_surface(tracks)
+    tracks, pauses = longest_bout(surface.tracks)
     screening = screen_tracks(tracks)
     ground = _rest_ground(screening.tracks)
     screening = screening._replace(tracks=ground.tracks)
@@ -189,6 +195,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         lacks=lacking(tracks.points),
         notes=(
             *(f"{name} {reason}" for name, reason in faults.items()),
+            *surface.notes,
             *pauses,
             *ground.notes,
             *([unused] if unused else ()),
@@ -208,6 +215,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             unsure,
         ),
         cycle=_mean_cycle(tracks, mean_reading, feet, zero),
+        slope=surface.slope,
     )
 
 
