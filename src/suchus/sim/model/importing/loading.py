@@ -142,8 +142,8 @@ def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[st
         raise UnreadableFile(f"MuJoCo says: {message[:240].rstrip('.')}.") from error
     if meshes.open:
         inertia_remarks += (
-            f"{len(meshes.open)} meshes are no closed surfaces: where a body has no <inertial>, its mass is that of "
-            "the convex hull.",
+            f"{len(meshes.open)} meshes are no closed surfaces, or have more than 200 000 faces: where a body has no "
+            "<inertial>, its mass is that of the convex hull.",
         )
     for name in ("body_pos", "body_quat", "body_mass", "body_ipos", "jnt_axis", "jnt_pos", "jnt_range", "geom_size"):
         if not np.isfinite(getattr(model, name)).all():

@@ -13,6 +13,7 @@ from suchus.core.reading import NoMeshes, check_file, read_mesh, read_text
 _MANIFEST, _MAX_MANIFEST_SIZE = "package.xml", 2**20  # bytes
 _NAME_ELEMENT = re.compile(r"<name>([^<]*)</name>")
 _MAX_PACKAGE_DEPTH, _MAX_FOLDERS = 4, 5000  # levels and folders that are searched for packages
+_MAX_FACES = 200_000  # of a mesh as STL, by MuJoCo
 _MAX_TOTAL_SIZE = 64 * 2**20  # bytes of all meshes
 _SCHEMES = ("package://", "model://")
 
@@ -213,9 +214,14 @@ def path_inside(home: Path, name: str) -> Path | None:
 
 
 def _stl(mesh_file: Path, data: bytes) -> tuple[bytes, bool]:
-    """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened."""
+    """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened.
+
+    Of a mesh with more faces than MuJoCo reads from STL it is the convex hull, which counts as not closed.
+    """
     mesh = read_mesh(mesh_file, data)
     try:
+        if len(mesh.faces) > _MAX_FACES:
+            return mesh.convex_hull.export(file_type="stl"), False
         return mesh.export(file_type="stl"), bool(mesh.is_watertight)
     except Exception as error:  # whatever trimesh raises for a mesh that is none
         raise UnreadableFile(f"{mesh_file.name} is no mesh: {' '.join(str(error).split())[:120]}") from error
