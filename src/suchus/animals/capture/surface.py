@@ -17,6 +17,8 @@ MAX_LEVEL_SLOPE = np.radians(10.0)
 _MIN_POSITIONS = 30  # least positions of feet, of two legs at least
 _MIN_FLATNESS = 2.5  # least ratio of the feet's spread in the surface to that across it
 _ROUNDS, _OUTLIER = 3, 4.0  # rounds of leaving out outliers; distance from the surface over the usual one
+_MIN_FRACTION = 0.7  # least fraction of the feet's positions that lie in the surface
+_MAX_REPEATED = 0.5  # greatest fraction of frames in which a foot is exactly where it was: a keypoint that is stuck
 _MIN_HEIGHT = 0.03  # [extent of the feet]; a trunk that is nearer to the surface does not show its side
 
 
@@ -62,11 +64,12 @@ def level_surface(tracks: Tracks) -> Surface:
 
 def _surface_normal(tracks: Tracks) -> Float[np.ndarray, " axis"] | None:
     """Return the direction across the surface on the animal's side; None where feet and trunk do not show it."""
-    feet = [tracks.at(leg) for leg in tracks.legs]
+    feet = [tracks.at(leg) for leg in tracks.legs if _steps(tracks.at(leg))]
     if len(feet) < 2:
         return None
     positions = np.concatenate(feet)
     positions = positions[np.isfinite(positions).all(axis=1)]
+    seen_count = len(positions)
     for _ in range(_ROUNDS):
         if len(positions) < _MIN_POSITIONS:
             return None
@@ -75,7 +78,7 @@ def _surface_normal(tracks: Tracks) -> Float[np.ndarray, " axis"] | None:
         normal = axes[-1]
         distance = np.abs(offsets @ normal - np.median(offsets @ normal))
         positions = positions[distance <= _OUTLIER * (1.4826 * np.median(distance)) + 1e-9 * spreads[0]]
-    if spreads[-2] < _MIN_FLATNESS * spreads[-1]:
+    if spreads[-2] < _MIN_FLATNESS * spreads[-1] or len(positions) < _MIN_FRACTION * seen_count:
         return None
     height = _trunk_offset(tracks, feet) @ normal
     if not np.isfinite(height):
@@ -84,6 +87,12 @@ def _surface_normal(tracks: Tracks) -> Float[np.ndarray, " axis"] | None:
         up = 1.0 if normal[-1] >= 0.0 else -1.0  # nothing says that it hangs
         return np.asarray(up * normal) if abs(normal[-1]) > np.cos(MAX_LEVEL_SLOPE) else None
     return np.asarray(np.sign(height) * normal)
+
+
+def _steps(place: Float[np.ndarray, "frame axis"]) -> bool:
+    """Return whether a foot is seen to move; one that is stuck at a place shows no surface."""
+    place = place[np.isfinite(place).all(axis=1)]
+    return len(place) > 2 and float(np.mean((np.diff(place, axis=0) == 0.0).all(axis=1))) < _MAX_REPEATED
 
 
 def _trunk_offset(tracks: Tracks, feet: list[np.ndarray]) -> Float[np.ndarray, " axis"]:
