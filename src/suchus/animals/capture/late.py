@@ -33,6 +33,7 @@ _BENDS = 5  # greatest power of time in the fit of a path
 _HARMONICS = 4  # greatest number of harmonics in the fit of a path
 _SKIN = 0.01  # [link]; least standard deviation of a distance
 _MAX_LINK = 0.5  # [trunk]; a longer link may bend between its keypoints, which nothing shows
+_MAX_CHORD_BEND = 0.05  # [rad]; root mean square of the bend at a longer link that says nothing of the pace
 _CHORD = 0.1  # [link]; standard deviation of the distance of keypoints with such a bend
 _WHITE = 0.3  # mean square of residuals' steps over twice their variance, above which they count as independent
 _UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
@@ -350,7 +351,9 @@ class _Lags:
             self._tracks.rate * _moving_line(place, half)[1] * link_direction, axis=-1
         ) / np.linalg.norm(link_direction, axis=-1)
         use = np.isfinite(axial_velocity) & np.isfinite(link_length)
-        if use.sum() < _FRAMES or np.median(link_length[use]) > self._max_link:  # a long one bends, more at some paces
+        bend = max(self._mean_square_bends.get(point, 0.0) for point in (name, neighbour))
+        is_long = use.any() and float(np.median(link_length[use])) > self._max_link
+        if use.sum() < _FRAMES or (is_long and bend > _MAX_CHORD_BEND**2):  # its chord may vary with the pace
             return 0.0, _UNKNOWN
         angle = 2 * np.pi * np.multiply.outer(self._tracks.time[use], np.arange(1, _HARMONICS + 1)) / self._clock.period
         X, _ = np.linalg.qr(np.hstack([np.ones((use.sum(), 1)), np.cos(angle), np.sin(angle)]))

@@ -269,6 +269,8 @@ def summary(walk: Walk) -> list[str]:
         if name not in walk.numbers:
             return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
         value, _, error, _ = walk.numbers[name]
+        if value != value:  # a standing index of a chain with fewer than two joints that bend
+            return "(not known)"
         error_text = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
         return f"{scale * value:.{digits}f}{error_text}"
 

@@ -72,10 +72,12 @@ class Meshes:
         if not self.shapeless_bodies:
             return
         body, name = next(iter(self.shapeless_bodies.items()))
+        is_found = " is no mesh" in self.read_errors[name]
         others_text = f" and of {len(self.shapeless_bodies) - 1} more" if len(self.shapeless_bodies) > 1 else ""
         raise UnreadableFile(
             f"the shape of {body}{others_text} is a mesh that was not read: {self.read_errors[name]}. "
-            f"{self._advice(name)}, or --without-meshes to have rods in the place of such shapes."
+            f"{'Convert or mend it' if is_found else self._advice(name)}, or say --without-meshes to have rods in "
+            "the place of such shapes."
         )
 
     def _advice(self, name: str) -> str:
