@@ -141,7 +141,10 @@ def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarra
             numbered_frames = [(number, points_of) for number, points_of, _ in reader.read_frames(copy=True)]
             rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
     except Exception as error:
-        raise UnreadableFile(f"{path} cannot be read as a C3D file: {' '.join(str(error).split())}.") from error
+        raise UnreadableFile(
+            f"{path} cannot be read as a C3D file: it is damaged, cut, or of another kind; export it again, or give a "
+            "TRC file."
+        ) from error
     frames = [points_of for _, points_of in numbered_frames]
     samples = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
     place = samples[..., :3].copy()

@@ -226,4 +226,4 @@ def _stl(mesh_file: Path, data: bytes) -> tuple[bytes, bool]:
             return mesh.convex_hull.export(file_type="stl"), False
         return mesh.export(file_type="stl"), bool(mesh.is_watertight)
     except Exception as error:  # whatever trimesh raises for a mesh that is none
-        raise UnreadableFile(f"{mesh_file.name} is no mesh: {' '.join(str(error).split())[:120]}") from error
+        raise UnreadableFile(f"{mesh_file.name} is no mesh whose surface can be written as STL") from error
