@@ -124,7 +124,7 @@ def draw(rows: Mapping[str, Mapping[str, Mapping[str, float]]]) -> None:
         labels = list(rows[tasks[0]])
         for k, label in enumerate(labels):
             values = [rows[task][label][quantity] for task in tasks]
-            panel.bar(np.arange(len(tasks)) + 0.27 * (k - 1), values, 0.25, label=label)
+            panel.bar(np.arange(len(tasks)) + 0.21 * (k - 0.5 * (len(labels) - 1)), values, 0.19, label=label)
         panel.set_xticks(range(len(tasks)), [task.replace(" ", "\n") for task in tasks])
         panel.set_ylabel(quantity)
     panels[1].legend(fontsize=7)
