@@ -155,6 +155,12 @@ class Chance:
     """Seed of the commands."""
     noise_seed: int = 0
     """Seed of the noise on the observations."""
+    body_seed: int = 0
+    """Seed of the errors of the robot as built."""
+    uphill: float = 0.0
+    """Slope along the walk beside that of the task's ground [rad]."""
+    sideways: float = 0.0
+    """Slope across the walk, likewise [rad]."""
 
     @property
     def fault(self) -> str:
@@ -241,6 +247,7 @@ class Pack:
             run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
         else:
             run = Run(robot=task.body, gait=task.swimming_gait, water=task.flow)
+        self._run, self._varies = run, task.tolerances is not None or task.slope > 0.0
         self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor, fast=task.fast)
         self._tanks = None if task.flow is None else Tanks(run, loop.batch, periods, loop.period)
         self._observer = Observer(task.robot, count, task.observed)
@@ -303,6 +310,8 @@ class Pack:
             faults = () if chance.broken is None else (chance.broken,)
             pushes = () if chance.push is None else (chance.push,)
             beginning = displace_joints(self.task, self._begin, jitter)
+            if self._varies:
+                self.loop.exchange(i, self._drawn_run(chance))
             self.loop.restart(i, beginning, faults, pushes)
             if self._tanks is not None:
                 self._tanks.restart(i, beginning, faults, pushes)
@@ -312,6 +321,13 @@ class Pack:
             self._phases[i] = chance.phase
             self._set_goal(i)
             self._tracking.restart(i, self._facing()[i])
+
+    def _drawn_run(self, chance: Chance) -> Run:
+        """Return the run of an episode: a robot with the errors of a build, on a slope."""
+        ground, tolerances = self._run.ground, self.task.tolerances
+        ground = replace(ground, uphill=ground.uphill + chance.uphill, sideways=ground.sideways + chance.sideways)
+        run = replace(self._run, ground=ground)
+        return run if tolerances is None else tolerances.draw_run(run, chance.body_seed)
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return the observation of each robot, see ``senses``."""
@@ -517,4 +533,9 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
         chance = replace(chance, command_seed=int(random.integers(2**31)))
     if task.noise > 0.0:
         chance = replace(chance, noise_seed=int(random.integers(2**31)))
+    if task.tolerances is not None:
+        chance = replace(chance, body_seed=int(random.integers(2**31)))
+    if task.slope > 0.0:
+        uphill, sideways = random.uniform(-task.slope, task.slope, 2).tolist()
+        chance = replace(chance, uphill=uphill, sideways=sideways)
     return chance

@@ -14,7 +14,7 @@ from suchus.robot.design import Robot
 from suchus.robot.gaits import GAITS, gait_of
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Ground, Lake
+from suchus.sim.land import Ground, Lake, Tolerances
 from suchus.sim.land.waters import Slice, Space
 
 
@@ -33,6 +33,8 @@ SWIM_SPAN = 1.4
 """Span of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
 SHORE_SPAN = 2.5
 """Span of the actions in the task Shore [rad]: from limbs folded back to the forward end of a stride."""
+VELOCITY_SLOPE = radians(3)
+"""Greatest slope of the ground in the task Velocity, along and across the walk [rad]."""
 _SLOPE, _OFFSHORE = radians(8), 1.6  # distance of the water line from the beginning [m], where the robot floats free
 _CRAWL = Task()
 _SWIM = replace(
@@ -77,6 +79,8 @@ TASKS: Mapping[str, Task] = MappingProxyType(
             ),
             delay=0.02,
             noise=0.01,
+            tolerances=Tolerances(),
+            slope=VELOCITY_SLOPE,
         ),
         "Swim": _SWIM,
         "Shore": replace(
@@ -128,6 +132,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "pushes": (Pushes, type(None)),
         "commands": (CommandRanges, type(None)),
         "lake": (Lake, type(None)),
+        "tolerances": (Tolerances, type(None)),
         "water": (str, Slice, Space),
         "swim": (Gait, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),

@@ -2,12 +2,13 @@
 
 import copy
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 from jaxtyping import Float
-from mujoco.batch import Batch, SimulationError
+from mujoco.batch import MODEL_FIELDS, Batch, SimulationError
 
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
@@ -30,6 +31,7 @@ _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physi
 FAST_ITERATIONS = 10
 """Iterations of the contact solver in fast physics [-]."""
 _SERVO_FIELDS = ("actuator_gainprm", "actuator_biasprm", "actuator_forcerange")
+_ARRAY_FIELDS = tuple(sorted(name for name in MODEL_FIELDS if not name.startswith("opt.")))
 _CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
 
 
@@ -83,6 +85,8 @@ class SimulationBatch:
         self.laws = ServoLaws(shared, self._robots)
         """The numbers by which the torques of the servos follow."""
         self._rewired: set[int] = set(range(len(runs)))
+        self._compile = partial(_model, timestep=timestep, max_pieces=max_pieces, is_solved=is_solved, fast=fast)
+        self._body_fields: set[str] = set()  # fields in which robots that were put in differ from the first
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)
@@ -130,6 +134,24 @@ class SimulationBatch:
         for attribute in name.split("."):
             owner = getattr(owner, attribute)
         return np.asarray(owner)
+
+    def exchange(self, sim: int, run: Run) -> None:
+        """Give a run a robot of other masses and a ground of another slope and friction; ``restart`` it after this.
+
+        Args:
+            sim: the run.
+            run: run whose robot and ground it gets; its relief is not looked at.
+        """
+        correction = None if run.lake is None else run.lake.correction
+        model = self._compile((run.robot, run.ground.relief, correction))
+        self._body_fields |= {name for name in _ARRAY_FIELDS if not _are_equal(self.model, model, name)}
+        for name in sorted(self._body_fields):
+            self.field(name, sim)[:] = getattr(model, name)
+        self.field("geom_friction", sim)[:] = model.geom_friction
+        self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
+        self.tilt(sim, run.ground)
+        self._robots[sim] = run.robot
+        self.commit()
 
     def commit(self) -> None:
         """Let the physics know of written model fields, and the meters of changed servos."""
@@ -442,6 +464,11 @@ class SimulationBatch:
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
+
+
+def _are_equal(first: Any, second: Any, name: str) -> bool:
+    """Return whether a field of two models has the same numbers."""
+    return np.array_equal(getattr(first, name), getattr(second, name))
 
 
 def _model(

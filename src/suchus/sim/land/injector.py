@@ -224,6 +224,25 @@ class Disturbances:
         for sim, run in enumerate(runs):
             self.schedule(sim, run.faults, run.pushes)
 
+    def set_errors(self, sim: int, zero_error: Sequence[float], play: Sequence[float]) -> None:
+        """Replace the errors of a run's servos, and mend what is broken.
+
+        Args:
+            sim: the run.
+            zero_error: error of the zero of each servo; empty for none [rad].
+            play: play of each servo, whole width; empty for none [rad].
+        """
+        self.injector.mend(sim)
+        servos = self._reached_angles.shape[1]
+        if sim not in self._inexact_sims:
+            self._inexact_sims.append(sim)
+            self._zero_error = np.vstack([self._zero_error.reshape(-1, servos), np.zeros(servos)])
+            self._half_play = np.vstack([self._half_play.reshape(-1, servos), np.zeros(servos)])
+        row = self._inexact_sims.index(sim)
+        self._zero_error[row] = np.array(zero_error) if len(zero_error) else 0.0
+        self._half_play[row] = np.array(play) / 2 if len(play) else 0.0
+        self._reached_angles[sim] = np.nan
+
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
         """Replace the future faults and pushes of a run, whose clock is at 0; faults that act already are repaired.
 

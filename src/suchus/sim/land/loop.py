@@ -222,6 +222,16 @@ class Loop:
         """Choose which runs go on from now, whether or not they have diverged; the others wait."""
         self._going[:] = self.batch.alive[:] = going
 
+    def exchange(self, sim: int, run: Run) -> None:
+        """Give a run another robot of the same design and another ground; ``restart`` it after this.
+
+        Args:
+            sim: the run.
+            run: run whose masses, errors of servos, slope and friction it gets.
+        """
+        self.disturbances.set_errors(sim, run.zero_error, run.play)
+        self.batch.exchange(sim, run)
+
     def restart(self, sim: int, begin: Beginning, faults: Sequence[Fault] = (), pushes: Sequence[Push] = ()) -> None:
         """Let one run begin anew; the others go on.
 
