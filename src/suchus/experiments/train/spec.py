@@ -10,7 +10,7 @@ import numpy as np
 
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
-from suchus.robot.control.policy import ACTIONS, Policy, mirror_shift, robot_digest
+from suchus.robot.control.policy import ACTIONS, AXIS_ACTIONS, Policy, mirror_shift, robot_digest
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import default_gait
@@ -64,7 +64,6 @@ _SPANS = {
 }  # fmt: skip
 """Greatest correction of each parameter by a network."""
 _MAX_RATE, _MIN_RATE = 3.0, 0.4
-_AXIS_PARAMETERS = ("bend", "tail", "wave", "lag")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -246,7 +245,7 @@ class Training:
     @property
     def actions(self) -> tuple[str, ...]:
         """Parameters that the network corrects."""
-        whole_body = tuple(name for name in self.bounds if self.axis or name not in _AXIS_PARAMETERS)
+        whole_body = tuple(name for name in self.bounds if self.axis or name not in AXIS_ACTIONS)
         has_paths = self.base_gait.has("foot paths")
         limb_actions = ("limb_stroke", *(("limb_lowering",) if has_paths else ())) if self.base_gait.limbs else ()
         return whole_body + (limb_actions if not self.kind.is_swim else ())

@@ -68,6 +68,8 @@ ACTIONS: Mapping[str, Action] = MappingProxyType(
     }
 )
 """Parameters of the pattern that a policy may set, by name."""
+AXIS_ACTIONS = ("bend", "tail", "wave", "lag")
+"""Those that bend spine and tail."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,6 +211,12 @@ class Policy:
             for name in self.actions
             for limb in (range(len(self.limbs)) if ACTIONS[name].per_limb else (-1,))
         )
+
+    @property
+    def bends_axis(self) -> bool:
+        """Whether it may bend spine or tail: by its gait, its table or its network."""
+        names = {*self.parameters, *self.actions}
+        return not names.isdisjoint(AXIS_ACTIONS) or self.gait != self.gait.without("axis")
 
     @property
     def max_speed(self) -> float:

@@ -86,6 +86,7 @@ class SimulationBatch:
         """The numbers by which the torques of the servos follow."""
         self._rewired: set[int] = set(range(len(runs)))
         self._compile = partial(_model, timestep=timestep, max_pieces=max_pieces, is_solved=is_solved, fast=fast)
+        self._picture_data: Any = None
         self._body_fields: set[str] = set()  # fields in which robots that were put in differ from the first
         self._lay_ground(runs)
         if self._models:
@@ -337,6 +338,20 @@ class SimulationBatch:
             "worked": self.period_means,
             "effort": self.effort,
         }
+
+    def body_poses(self, sim: int, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions [m] and unit quaternions wxyz of some bodies of a run, shapes (body, 3) and (body, 4).
+
+        Args:
+            sim: the run.
+            names: names of the bodies.
+        """
+        data = mujoco.MjData(self.model) if self._picture_data is None else self._picture_data
+        self._picture_data = data
+        data.qpos[:] = self.qpos[sim]
+        mujoco.mj_kinematics(self.model, data)
+        rows = [self.model.body(name).id for name in names]
+        return np.array(data.xpos[rows]), np.array(data.xquat[rows])
 
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
