@@ -63,15 +63,14 @@ def test_the_shadow_lies_on_the_floor_away_from_the_light():
 
 
 def test_water_tints_what_is_below_its_surface_alone():
-    dry, deep, shallow = (picture(height=0.3, **water) for water in ({}, {"level": 0.7}, {"level": 0.25}))
+    above, deep, half = (picture(height=0.3, level=level) for level in (0.02, 0.7, 0.3))
     tinted = (1.0 - _WATER) * FLOOR + _WATER * WATER
     assert near(deep, tinted).mean() > 0.3
-    assert near(dry, tinted).sum() == 0
-    hide = dry[..., 1] - dry[..., 2] > 0.12
-    under = (1.0 - _WATER) * dry + _WATER * WATER
-    assert near(deep, under)[hide].mean() > 0.6
-    assert near(shallow, dry)[hide].mean() > 0.4  # the back is above the water
-    assert near(shallow, under)[hide].mean() < 0.4
+    assert near(picture(height=0.3), tinted).sum() == 0
+    hide = above[..., 1] - above[..., 2] > 0.12
+    under = (1.0 - _WATER) * above + _WATER * WATER
+    assert near(deep, under)[hide].mean() > 0.9
+    assert 0.2 < near(half, above)[hide].mean() < 0.9  # the back is above the water
 
 
 @pytest.mark.parametrize("uphill", [0.3, -0.3])
