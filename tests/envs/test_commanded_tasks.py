@@ -205,6 +205,12 @@ def test_an_episode_depends_on_its_seed_and_not_on_the_robots_beside_it_or_befor
     assert final(one, 8, 0) == alone
 
 
+def test_fast_physics_has_the_longest_step_unless_another_is_named():
+    assert gymnasium.make("suchus/Velocity-v0", fast=True).unwrapped.task.timestep == 0.01
+    assert gymnasium.make("suchus/Velocity-v0", fast=True, timestep=0.005).unwrapped.task.timestep == 0.005
+    assert gymnasium.make("suchus/Velocity-v0").unwrapped.task.timestep == 0.005
+
+
 def test_the_slope_of_an_episode_is_drawn():
     env = CrocodileVectorEnv(3, replace(VELOCITY, tolerances=None, ground=Ground(uphill=0.1)))
     env.reset(seed=1)

@@ -47,6 +47,7 @@ _MIN_STANDING_FRACTION = 0.6
 
 The article's robot has 0.99 when it stands and 0.2 when it lies.
 """
+_NOISE_STEPS = 32  # of an episode whose noise is drawn together
 _STRAIGHT_GAIT = "limbs_only"  # the trunk is straight in its first posture
 
 
@@ -366,9 +367,11 @@ class Pack:
 
     def _noise(self, columns: int) -> Float[np.ndarray, "run n"]:
         """Return the noise on the observations of this instant; it depends on each robot's seed and time alone."""
-        ticks = self.loop.clocks.tolist()
-        seeds = [chance.noise_seed for chance in self.chances]
-        rows = [np.random.default_rng([s, t]).standard_normal(columns) for s, t in zip(seeds, ticks, strict=True)]
+        steps = (self.loop.clocks // self._actor.periods).tolist()
+        rows = [
+            _noise_block(chance.noise_seed, step // _NOISE_STEPS, columns)[step % _NOISE_STEPS]
+            for chance, step in zip(self.chances, steps, strict=True)
+        ]
         return np.asarray(self.task.noise * np.array(rows), dtype=np.float32)
 
     def act(self, actions: Float[np.ndarray, "run servo"], active_mask: Bool[np.ndarray, " run"]) -> Terms:
@@ -400,11 +403,14 @@ class Pack:
         if self._tanks is not None:
             work = self._tanks.act(target, active_mask)
             self.loop.skip(self._actor.periods)
+        elif (powers := self.loop.advance_many(self._actor.periods)) is not None:
+            for power in powers:
+                work += power * self.loop.period
         else:
             for period in range(1, self._actor.periods + 1):
                 self.loop.decide()
                 self.loop.advance(
-                    need_forces=period == self._actor.periods
+                    need_forces=period == self._actor.periods, only_power=True
                 )  # contact loads are read at the end of the action only
                 work += self.loop.batch.effort[..., ABSOLUTE_POWER].sum(axis=1) * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
@@ -505,6 +511,18 @@ class Pack:
         tilt, max_tilt = (float(np.degrees(np.arccos(np.clip(c, -1, 1)))) for c in (level, self.task.least_level))
         root = self.task.robot.root
         return f"it rolled over {time_text}: the {root} is tilted by {tilt:.0f} degrees, beyond {max_tilt:.0f}"
+
+
+@lru_cache(maxsize=1024)
+def _noise_block(seed: int, block: int, columns: int) -> Float[np.ndarray, "step n"]:
+    """Return the noise of some steps of an episode in a row, of unit variance.
+
+    Args:
+        seed: seed of the episode's noise.
+        block: number of the row of steps in it.
+        columns: columns of an observation.
+    """
+    return np.random.default_rng([seed, block]).standard_normal((_NOISE_STEPS, columns))
 
 
 def draw(task: Task, random: np.random.Generator) -> Chance:

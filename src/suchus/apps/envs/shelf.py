@@ -11,6 +11,7 @@ from suchus.apps.envs.task import AnyGoal, Breaks, CommandRanges, Goal, Landing,
 from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.robot.control.observation import FAILURE_READINGS, ROBOT_READINGS
 from suchus.robot.design import Robot
+from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS, gait_of
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
@@ -100,7 +101,8 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
     A robot or a gait may be given by its name in the catalog or the path of its file; a robot brings its gait and its
-    size, see ``Task.for_robot``. With ``water`` a flow takes the place of the lake.
+    size, see ``Task.for_robot``. With ``water`` a flow takes the place of the lake. With ``fast`` the time step becomes
+    a control period, the longest that there is, unless ``timestep`` is named.
 
     Raises:
         UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
@@ -143,6 +145,8 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
             raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {allowed_types} is needed.")
     if "robot" in values:
         task = task.for_robot(values.pop("robot"), values.pop("gait", None))
+    if values.get("fast") is True:
+        values.setdefault("timestep", control_period(task.robot))
     return replace(task, **values)
 
 

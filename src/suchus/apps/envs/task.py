@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from math import pi
 from types import MappingProxyType
 from typing import Any, Literal, get_args
@@ -340,8 +341,20 @@ class CommandRanges:
             seed: seed of the episode.
             time: time since its beginning [s].
         """
-        random = np.random.default_rng([seed, int(time / self.interval + 1e-9)])
-        return float(random.uniform(*self.forward)), float(random.uniform(*self.turn))
+        return _drawn_command(self, seed, int(time / self.interval + 1e-9))
+
+
+@lru_cache(maxsize=4096)
+def _drawn_command(ranges: CommandRanges, seed: int, number: int) -> tuple[float, float]:
+    """Return a command of an episode: speed [m/s] and turning rate [rad/s].
+
+    Args:
+        ranges: the ranges.
+        seed: seed of the episode.
+        number: number of the command in it.
+    """
+    random = np.random.default_rng([seed, number])
+    return float(random.uniform(*ranges.forward)), float(random.uniform(*ranges.turn))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

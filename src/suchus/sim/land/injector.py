@@ -55,6 +55,11 @@ class Injector:
             fault.mend(site)
         self._batch.commit()
 
+    @property
+    def is_broken(self) -> bool:
+        """Whether anything is broken in any run."""
+        return bool(self._broken)
+
     def broken(self, sim: int) -> tuple[Fault, ...]:
         """Return the faults that a run has now, in the order in which they began."""
         return tuple(fault for (owner, _), (fault, _) in self._broken.items() if owner == sim)
@@ -298,6 +303,18 @@ class Disturbances:
         """Add a push to the future ones of a run."""
         self._pushes[sim].append(push)
         self._update_next_tick(sim, -1)
+
+    def is_eventless(self, clocks: np.ndarray, going: np.ndarray, periods: int) -> bool:
+        """Return whether nothing is broken, and no fault or push is due in the next control periods.
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            going: whether each run goes on, shape (run,).
+            periods: number of the control periods.
+        """
+        if self.injector.is_broken:
+            return False
+        return not (self._has_pending and bool(((self._next_ticks < clocks + periods) & going).any()))
 
     def happen(self, clocks: np.ndarray, going: np.ndarray) -> None:
         """Let the faults of this control period begin, and push.
