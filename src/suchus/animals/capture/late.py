@@ -307,7 +307,7 @@ class _Lags:
         links = self.links([(neighbour, name) for neighbour in neighbours])
         if not links:
             return False
-        varies = sum(link.varies for link in links.values())
+        varies = np.sum([link.varies for link in links.values()], axis=0)
         by_turns = float(self.lags[int(np.argmin(varies))])
         index = int(np.argmin(np.abs(self.lags - lag)))
         paced = self._paced(chain, name)

@@ -30,9 +30,9 @@ _SHADOW, _WATER = 0.22, 0.3  # opacities
 _GRID = ((0.1, 0.0006, 0.22), (1.0, 0.002, 0.70))  # distance of lines [m], their width [m], opacity
 _FADE = (2.0, 9.0)  # [m]; distances from the camera between which lines fade
 _WATER_REACH = 9.0  # robot's lengths around the robot in which water is seen
-_SHADES = np.full((256, 4), 255, dtype=np.uint8)
-_SHADES[:, :3] = np.rint(255.0 * (_BACK + np.linspace(0.0, 1.0, 256)[:, None] * (_LINE - _BACK)))
-_SHADES = _SHADES.view(np.uint32)[:, 0]  # colours between floor and line, one number each
+_SHADE_BYTES = np.full((256, 4), 255, dtype=np.uint8)
+_SHADE_BYTES[:, :3] = np.rint(255.0 * (_BACK + np.linspace(0.0, 1.0, 256)[:, None] * (_LINE - _BACK)))
+_SHADES = _SHADE_BYTES.view(np.uint32)[:, 0]  # colours between floor and line, one number each
 _WATER_COLOUR = np.array(to_rgb(KEYS["water"]), dtype=np.float32)
 _WET_SHADES = np.rint((1.0 - _WATER) * np.arange(256.0) + _WATER * 255.0 * _WATER_COLOUR[:, None]).astype(
     np.uint8
@@ -96,7 +96,7 @@ class Renderer:
         self._vertices, self._normals = skin.vertices.astype(np.float32), skin.normals.astype(np.float32)
         self._colours = (skin.colours / 255.0).astype(np.float32)
         self._weights = skin.weights[:, :2, None, None].astype(np.float32)
-        self._canvas: Any = RendererAgg(width, height, _DPI)
+        self._canvas: Any = RendererAgg(width, height, _DPI)  # type: ignore[no-untyped-call]
         x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
         self._rays = (
             np.stack(  # direction through each pixel, at unit distance from the camera
@@ -196,8 +196,7 @@ class Renderer:
                 cells -= np.float32(0.5 * width)
                 cells /= footprint[rows]
                 missed = np.minimum(missed, cells)
-            missed *= np.float32(1.0 / 1.2) / height
-            np.clip(missed, 0.0, 1.0, out=missed)
+            missed = np.clip(missed * (np.float32(1.0 / 1.2) / height), np.float32(0.0), np.float32(1.0))
             hit = 1.0 - missed * missed * (3.0 - 2.0 * missed)
             hit *= np.minimum(np.float32(opacity * spacing / 6.0) / height * self._fineness[rows], np.float32(opacity))
             fraction = fraction + hit
