@@ -101,7 +101,7 @@ def test_it_goes_on_where_it_was_and_ends_with_the_same_bytes(trained, judged_be
 
 def test_a_network_starts_from_the_table_of_another_policy(trained, tmp_path, monkeypatch):
     result, _ = trained
-    monkeypatch.setattr(training_module.conduct, "judge", lambda *_, **__: result.judgement)  # full physics is tried above
+    monkeypatch.setattr(training_module.conduct, "judge", lambda *_, **__: result.judgement)  # tried above
     training = Training(task="fault", robot=STRIDER, start=result.policy)
     told = train(training, tmp_path, network_generations=1)
     assert told.policy.table == result.policy.table
