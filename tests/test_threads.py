@@ -1,9 +1,9 @@
 import threading
 from types import SimpleNamespace
 
-import busy_threads
 import pytest
 
+import busy_threads
 from suchus.core import threads
 from suchus.core.errors import OutsideLimits
 
