@@ -142,12 +142,10 @@ def test_a_moving_outline_is_placed_by_the_points_near_each_edge(monkeypatch):
         sys.setprofile(None)
         calls.append(len(events))
     assert calls[0] == calls[1]
-    pairs, distance_to_edge, edge_kernel = [], paint.distance_to_edge, paint._paint_edge
-    monkeypatch.setattr(paint, "distance_to_edge", lambda *given: pairs.append(given) or distance_to_edge(*given))
-    monkeypatch.setattr(paint, "_paint_edge", getattr(edge_kernel, "py_func", edge_kernel))
-    edges = getattr(paint._paint_edges, "py_func", paint._paint_edges)
+    pairs, distance = [], paint.distance_to_edge.py_func
+    monkeypatch.setattr(paint, "distance_to_edge", lambda *given: pairs.append(given) or distance(*given))
     square, edge, outline = np.full((x.size, x.size), reach**2), np.full((x.size, x.size), -1), round_corners().T
-    edges(square, edge, np.zeros(square.shape), (0, x.size), outline, x[0], x[0], x[1] - x[0], reach)
+    paint._paint_edges(square, edge, np.zeros(square.shape), (0, x.size), outline, x[0], x[0], x[1] - x[0], reach)
     near = np.count_nonzero(edge >= 0)
     assert near > 1000
     assert near <= len(pairs) < 20 * near < 0.01 * square.size * outline.shape[1]
