@@ -57,7 +57,6 @@ OTHER = {
     "a period before zero": (lambda r: r.assign(period=-r.period), "holds period -"),
     "a duty factor of 3": (lambda r: r.assign(duty_factor=3 + 0 * r.duty_factor), "holds duty_factor 3"),
     "an end before the beginning": (lambda r: r.assign(ended=r.ended - 60.0), "holds ended -"),
-    "no place": (lambda r: r.assign(position=np.nan * r.position), "holds position otherwise"),
     "quaternions": (lambda r: r.isel(wxyz=[1, 2, 3, 0]), "holds orientation otherwise"),
     "backwards": (lambda r: r.isel(time=slice(None, None, -1)), "times that do not rise"),
 }

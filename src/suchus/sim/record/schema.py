@@ -13,7 +13,6 @@ from suchus.robot.design.ground import Bumps, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
 
 _MAX_NUMBER, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
-_ALWAYS_FINITE = ("position", "orientation")  # at the beginning at least
 _MAX_TIME, _MIN_SAMPLE_INTERVAL = 1e7, 1e-7  # [s]
 _TIME_TOLERANCE = 1e-9  # [s]
 _MIN_STEPS = 4  # between samples; where there are fewer, none is longer than all the rest
@@ -312,8 +311,6 @@ def _fits_schema(record: xr.Dataset, name: str) -> bool:
     sizes = all(variable.sizes[dim] == size for dim, size in (("xyz", 3), ("wxyz", 4)) if dim in dims)
     numbers = np.asarray(variable.values, dtype=float)
     numbers = numbers[np.isfinite(numbers)]
-    if name in _ALWAYS_FINITE and not numbers.size:
-        return False
     if not (labels and has_labels and sizes) or (numbers.size and np.abs(numbers).max() > _MAX_NUMBER):
         return False
     if name == "orientation":
