@@ -35,8 +35,9 @@ def main() -> None:
         _, full, full_turn, full_time = results[0]
         for step, quick, quick_turn, quick_time in results[1:]:
             print(
-                f"{robot_name:<8} {gait_name:<12} {1e3 * step:9.1f} {full:9.3f}  {quick:8.3f}  {quick / full - 1:+9.1%}"
-                f"  {full_turn:+10.3f} {quick_turn:+10.3f}  {full_time / quick_time:10.1f}"
+                f"{robot_name:<8} {gait_name:<12} {1e3 * step:9.1f} {full:9.3f}  "
+                f"{quick:8.3f}  {quick / full - 1:+9.1%}  "
+                f"{full_turn:+10.3f} {quick_turn:+10.3f}  {full_time / quick_time:10.1f}"
             )
 
 

@@ -1,6 +1,6 @@
 """Walks of the article's robot on servos as they were identified, into docs/servos.md and docs/pictures.
 
-Four robots: with the servos that the catalog used to have; as it is in the catalog, with the mean of the identified servos;
+Four robots: with the servos that the catalog used to have; as in the catalog, with the mean of the identified servos;
 with inertia and friction of an STS3215 at 7.4 V and the gains of the catalog; and with gains from inertia, delay and
 control period. Torque and speed stay those of the catalog.
 

@@ -1,5 +1,6 @@
 """A small training from beginning to end, from the command line too, on a hexapod of a file."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import xarray as xr
 from suchus.apps.cli import main
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
 from suchus.experiments import train as training_module
-from suchus.experiments.train import Training, judge, motion, train, train_seeds
+from suchus.experiments.train import Training, judge, motion, network_search, train, train_seeds
 from suchus.experiments.train.conduct import repeat_command
 from suchus.experiments.train.evaluate import draw_episodes, episode_run
 from suchus.experiments.train.table_search import EXPLORATION, TableSearch
@@ -25,13 +26,31 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
 
 STRIDER = ROBOTS["strider"]
-SHORT = {"table_generations": 2 * EXPLORATION + 1, "network_generations": 1}
+TABLE_GENERATIONS = 2 * EXPLORATION + 1
+SHORT = {"table_generations": TABLE_GENERATIONS, "network_generations": 1}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_networks():
+    """Let a generation have four networks, the fewest of which CMA-ES learns, and compare them in two episodes."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(network_search, "POPULATION", 4)
+        patch.setattr(training_module.conduct, "_CHECK_EPISODES", 2)
+        yield
 
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):
     folder = tmp_path_factory.mktemp("training")
     return train(Training(robot=STRIDER), folder, **SHORT), folder
+
+
+@pytest.fixture
+def judged_before(trained, monkeypatch):
+    """Let full physics judge no policy again that it has judged; another one fails."""
+    result, _ = trained
+    judgements = {result.table: result.table_judgement, replace(result.policy, training=()): result.judgement}
+    monkeypatch.setattr(training_module.conduct, "judge", lambda robot, policy, **_: judgements[policy])
 
 
 def test_what_is_trained_walks_and_turns(trained):
@@ -49,28 +68,42 @@ def test_what_is_trained_walks_and_turns(trained):
     assert float(record["error"]) == pytest.approx(result.judgement.error, rel=1e-3)
 
 
-def test_it_goes_on_where_it_was_and_ends_with_the_same_bytes(trained, tmp_path, monkeypatch):
-    result, _ = trained
+def test_it_goes_on_where_it_was_and_ends_with_the_same_bytes(trained, judged_before, tmp_path, monkeypatch):
+    """Interrupted in its first generation, in its last one of the table and in the network; nothing is done twice."""
+    result, folder = trained
+    shutil.copytree(folder / "generations", tmp_path / "generations")
+    parts = sorted((tmp_path / "generations" / "parts").glob("*.nc"))
+    assert len(parts) == TABLE_GENERATIONS + 1
+    for part in parts[-2:]:
+        part.unlink()
     calls = []
-    evaluate = training_module.conduct.evaluate_table
 
-    def interrupted(training, candidates):
-        if len(calls) == 4:
-            raise KeyboardInterrupt
-        calls.append(len(candidates))
-        return evaluate(training, candidates)
+    def watch(name, *, is_interrupted):
+        evaluate = getattr(training_module.conduct, name)
 
-    monkeypatch.setattr(training_module.conduct, "evaluate_table", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        train(Training(robot=STRIDER), tmp_path, **SHORT)
-    monkeypatch.setattr(training_module.conduct, "evaluate_table", evaluate)
+        def evaluated(*given):
+            calls.append(name)
+            if is_interrupted:
+                raise KeyboardInterrupt
+            return evaluate(*given)
+
+        return patch.setattr(training_module.conduct, name, evaluated)
+
+    for interrupted in ("evaluate_table", "evaluate_policies"):
+        with monkeypatch.context() as patch:
+            for name in ("evaluate_table", "evaluate_policies"):
+                watch(name, is_interrupted=name == interrupted)
+            with pytest.raises(KeyboardInterrupt):
+                train(Training(robot=STRIDER), tmp_path, **SHORT)
+    assert calls == ["evaluate_table", "evaluate_table", "evaluate_policies"]
     again = train(Training(robot=STRIDER), tmp_path, **SHORT)
     assert again.path.read_bytes() == result.path.read_bytes()
-    assert (tmp_path / "learning_curve.csv").read_text().splitlines()[0] == "stage,generation,loss"
+    assert (tmp_path / "learning_curve.csv").read_text() == (folder / "learning_curve.csv").read_text()
 
 
-def test_a_network_starts_from_the_table_of_another_policy(trained, tmp_path):
+def test_a_network_starts_from_the_table_of_another_policy(trained, tmp_path, monkeypatch):
     result, _ = trained
+    monkeypatch.setattr(training_module.conduct, "judge", lambda *_, **__: result.judgement)  # the full physics: above
     training = Training(task="fault", robot=STRIDER, start=result.policy)
     told = train(training, tmp_path, network_generations=1)
     assert told.policy.table == result.policy.table

@@ -270,7 +270,7 @@ def _friction() -> Lesson:
         because="Friction does two things: feet push with it, and whatever drags over the ground is braked by it. "
         "If both were scaled alike and nothing else counted, the distance would not change at all. Look "
         "which feet slide, in which direction, and what the tail does.",
-        command="suchus run terrain --quick",
+        command="suchus run terrain",
         laboratory=gait,
     )
 
@@ -302,6 +302,6 @@ def _waves() -> Lesson:
         "body goes the other way. So a wave towards the tail swims forwards, and one towards the head "
         "swims backwards. How many waves there are decides how much of the pressing is along the body and "
         "how much only to the sides.",
-        command="suchus run swim_sweep --quick",
+        command="suchus run swim_sweep",
         laboratory=gait,
     )

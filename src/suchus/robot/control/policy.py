@@ -458,6 +458,7 @@ def action_mirror(policy: Policy) -> tuple[np.ndarray, np.ndarray]:
     return np.array(images, dtype=int), np.array([-1.0 if ACTIONS[name].is_odd else 1.0 for name, _ in columns])
 
 
+_DAMAGED = "{} is damaged, cut, or no .npz: its arrays cannot be read; take another copy, or train the policy again."
 _TEXTS = ("name", "task", "robot", "robot_digest")
 _ROWS = ("servos", "limbs", "parameters", "actions", "readings")
 _NUMBERS = ("length", "mass", "decision")
@@ -560,13 +561,13 @@ def _arrays(path: Path, data: bytes) -> dict[str, np.ndarray]:
                 f"{path} holds Python objects, which are never unpickled, since they may run programs: give a file "
                 "that suchus train wrote."
             ) from error
-        raise UnreadableFile(f"{path} is damaged: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
     except UnreadableFile:
         raise
     except (zipfile.BadZipFile, OSError, EOFError, KeyError, NotImplementedError, zipfile.LargeZipFile) as error:
-        raise UnreadableFile(f"{path} is damaged or no .npz: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
     except Exception as error:  # zlib.error and whatever else damaged bytes raise
-        raise UnreadableFile(f"{path} is damaged: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
 
 
 def _parse(arrays: Mapping[str, np.ndarray], path: Path) -> Policy:
@@ -607,7 +608,10 @@ def _parse(arrays: Mapping[str, np.ndarray], path: Path) -> Policy:
     except SuchusError as error:
         raise UnreadableFile(f"{path} is no policy: {error}") from error
     except (TypeError, ValueError, KeyError, IndexError) as error:
-        raise UnreadableFile(f"{path} is no policy: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(
+            f"{path} is no policy: its arrays have other shapes or kinds than those that suchus train writes; give "
+            "such a file."
+        ) from error
 
 
 def _record(rows: np.ndarray) -> tuple[tuple[str, str], ...]:

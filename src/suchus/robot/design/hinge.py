@@ -81,10 +81,10 @@ class Servo:
     def from_motor(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
-        Torque, speed and winding are those of the motor. Data sheets do not give rotor inertia and friction of the gear,
-        nor gains that suit a robot. These are taken from another servo, or, without one, in proportion to the torque:
-        inertia and friction as the identified servos have them on average, gains as the article's robot has them.
-        ``suchus calibrate`` measures them.
+        Torque, speed and winding are those of the motor. Data sheets give no rotor inertia, no friction of the gear
+        and no gains that suit a robot. These are taken from another servo, or, without one, in proportion to the
+        torque: inertia and friction as the identified servos have them on average, gains as the article's robot has
+        them. ``suchus calibrate`` measures them.
 
         Args:
             motor: as it is bought.
@@ -118,8 +118,8 @@ _MOST_IDLE = 0.9  # of the torque; beyond, the motor's own line would be that of
 _STIFFNESS = 40.0 / 3.0  # stiffness over torque [1/rad]
 _LEAD = 1.5 / 40.0  # derivative gain over stiffness [s]: critical damping of rotor and leg of the article's robot
 _INERTIA, _FRICTION, _DAMPING = 3.05e-3, 1.52e-2, 5.4e-3
-"""Rotor inertia [s2], dry friction [-] and damping [s/rad] of a gear over its torque at standstill: geometric means over
-the identified servos (``suchus.robot.motors.servo_parameters.estimated_parameters``)."""
+"""Rotor inertia [s2], dry friction [-] and damping [s/rad] of a gear over its torque at standstill: geometric means
+over the identified servos (``suchus.robot.motors.servo_parameters.estimated_parameters``)."""
 
 Turn = Literal["yaw", "pitch", "roll"]
 """What a hinge does.

@@ -84,7 +84,7 @@ tables = Tables(
 robot = crocodile(tables)
 """The article's robot."""
 
-_PID = "1 to 2 degrees of static droop in stance, critical damping of rotor and leg; integral action would wind up in stance"
+_PID = "1 to 2 degrees of droop in stance, critical damping of rotor and leg; integral action would wind up in stance"
 _RULE = "torque at standstill times the mean ratio of the identified servos, times or over a standard deviation of"
 _SERVO_CHOICE = "from an STS3215 for 12 V on three empty cells to an STS3250 on three full ones"
 _CASE = "room for a hobby servo's case, and a belly that clears the ground in the crawl"

@@ -30,9 +30,9 @@ _SHADOW, _WATER = 0.22, 0.3  # opacities
 _GRID = ((0.1, 0.0006, 0.22), (1.0, 0.002, 0.70))  # distance of lines [m], their width [m], opacity
 _FADE = (2.0, 9.0)  # [m]; distances from the camera between which lines fade
 _WATER_REACH = 9.0  # robot's lengths around the robot in which water is seen
-_SHADES = np.full((256, 4), 255, dtype=np.uint8)  # colours between floor and line
-_SHADES[:, :3] = np.rint(255.0 * (_BACK + np.linspace(0.0, 1.0, 256)[:, None] * (_LINE - _BACK)))
-_SHADE_NUMBERS = _SHADES.view(np.uint32)[:, 0]  # the same, one number each
+_SHADE_BYTES = np.full((256, 4), 255, dtype=np.uint8)
+_SHADE_BYTES[:, :3] = np.rint(255.0 * (_BACK + np.linspace(0.0, 1.0, 256)[:, None] * (_LINE - _BACK)))
+_SHADES = _SHADE_BYTES.view(np.uint32)[:, 0]  # colours between floor and line, one number each
 _WATER_COLOUR = np.array(to_rgb(KEYS["water"]), dtype=np.float32)
 _WET_SHADES = np.rint((1.0 - _WATER) * np.arange(256.0) + _WATER * 255.0 * _WATER_COLOUR[:, None]).astype(
     np.uint8
@@ -174,19 +174,19 @@ class Renderer:
     def _draw_floor(self, view: _View) -> None:
         """Draw the empty floor with its lines over everything, some rows at a time, which stay in the cache."""
         canvas = self._pixels.view(np.uint32)[..., 0]
-        canvas[: self._floor_rows] = _SHADE_NUMBERS[0]
+        canvas[: self._floor_rows] = _SHADES[0]
         count = len(self._floor_distance)
         for start in range(0, count, _ROWS):
             rows = slice(start, min(start + _ROWS, count))
             fraction = self._line_fraction(rows, view)
             below = slice(self._floor_rows + rows.start, self._floor_rows + rows.stop)
-            np.take(_SHADE_NUMBERS, (255.0 * np.minimum(fraction, 1.0)).astype(np.intp), out=canvas[below])
+            np.take(_SHADES, (255.0 * np.minimum(fraction, 1.0)).astype(np.intp), out=canvas[below])
 
     def _line_fraction(self, rows: slice, view: _View) -> Float[np.ndarray, "row width"]:
         """Return how far the colour of the floor is that of its lines, in some rows from the horizon on [-]."""
-        height, fraction = np.float32(view.eye[2]), np.zeros_like(self._floor_distance[rows])
+        height, fraction = np.float32(view.eye[2]), np.float32(0.0)
         for spacing, width, opacity in _GRID:
-            missed = np.ones_like(fraction)
+            missed = np.float32(1.0)
             for place, footprint, offset in zip(self._floor_places, self._footprints, view.eye[:2], strict=True):
                 cells = (height / np.float32(spacing)) * place[rows]
                 cells += np.float32(offset / spacing)
@@ -196,11 +196,10 @@ class Renderer:
                 cells -= np.float32(0.5 * width)
                 cells /= footprint[rows]
                 missed = np.minimum(missed, cells)
-            missed *= np.float32(1.0 / 1.2) / height
-            np.clip(missed, 0.0, 1.0, out=missed)
+            missed = np.clip(missed * (np.float32(1.0 / 1.2) / height), np.float32(0.0), np.float32(1.0))
             hit = 1.0 - missed * missed * (3.0 - 2.0 * missed)
             hit *= np.minimum(np.float32(opacity * spacing / 6.0) / height * self._fineness[rows], np.float32(opacity))
-            fraction += hit
+            fraction = fraction + hit
         return np.asarray(fraction * (1.0 - _smooth(height * self._floor_distance[rows], *_FADE)))
 
     def _prepare_floor(self) -> None:

@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
@@ -104,6 +104,7 @@ class Policies(Experiment):
     )
     reproduces = False
     follows_gait = False
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 4.0, "robots": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that the policy moves."""
