@@ -63,7 +63,7 @@ def test_the_shadow_lies_on_the_floor_away_from_the_light():
 
 
 def test_water_tints_what_is_below_its_surface_alone():
-    above, deep, half = (picture(height=0.3, level=level) for level in (0.02, 0.7, 0.34))
+    above, deep, half = (picture(height=0.3, level=level) for level in (0.02, 0.7, 0.32))
     tinted = (1.0 - _WATER) * FLOOR + _WATER * WATER
     assert near(deep, tinted).mean() > 0.3
     assert near(picture(height=0.3), tinted).sum() == 0
