@@ -4,12 +4,14 @@ import json
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 from tests.league.toys import stone
 
 from evidence.league import find
 from evidence.league import swims as swims_of_models
 from evidence.league.cases import CONTESTANTS, measured_file
+from evidence.league.cases.swimming_law import _fitted, resampled
 from evidence.league.contestant import Interval
 from evidence.league.judging import judged, unsteady_wave
 from evidence.league.page import all_standings, page, standing, standing_of, standing_text
@@ -81,3 +83,18 @@ def test_the_flow_in_space_is_no_mean_with_theories(monkeypatch):
     answers = swims_of_models._by_space(plain, [one.likely], partial(lambda *_: None))
     assert len(answers) == 1 + 2 * len(SPACE_CELLS)
     assert {round(answer["speed"], 9) for answer in answers} == {0.4}
+
+
+def test_a_law_over_swimmers_is_as_uncertain_as_their_choice():
+    """Where all swimmers follow one law each sample gives it; where they do not, samples differ."""
+    x = np.array([2.0, 3.0, 4.0])
+    alike = np.concatenate([np.column_stack([np.full(3, i), x + 0.1 * i, 1.5 * (x + 0.1 * i)]) for i in range(4)])
+    unlike = alike + np.outer(alike[:, 0] * alike[:, 1], [0.0, 0.0, 0.2])
+    samples = np.linspace(0.0, 1.0, 24)
+    assert resampled(unlike, 0.0) is unlike
+    for sample in samples:
+        assert len(np.unique(resampled(alike, sample)[:, 0])) >= 2
+    slopes = [[_fitted(resampled(points, sample))[0] for sample in samples] for points in (alike, unlike)]
+    assert np.ptp(slopes[0]) < 1e-9
+    assert np.ptp(slopes[1]) > 0.1
+    assert np.array_equal(resampled(unlike, 0.3), resampled(unlike, 0.3))
