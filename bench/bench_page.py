@@ -17,8 +17,9 @@ from suchus.robot.robots import ROBOTS
 
 ROBOT = ROBOTS["caiman"]
 SLOWDOWN = in_form(6, 2)  # of the processor [-]
-WATCHED = in_form(10.0, 1.0)  # wall time in which pictures are counted [s]
-SIMULATED = in_form(6.0, 0.5)  # time of the robots whose computing is timed [s]
+SCREEN = in_form({"width": 390, "height": 760}, {"width": 60, "height": 60})  # every pixel is drawn in software
+WATCHED = in_form(10.0, 0.3)  # wall time in which pictures are counted [s]
+SIMULATED = in_form(6.0, 0.2)  # time of the robots whose computing is timed [s]
 PATIENCE = 300_000  # [ms]
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 NOTE_START = """
@@ -65,7 +66,7 @@ def measure(browser: Any, address: str, slowdown: int) -> dict[str, float]:
         address: address of the page.
         slowdown: factor by which the processor is slowed.
     """
-    context = browser.new_context(viewport={"width": 390, "height": 760}, reduced_motion="reduce")
+    context = browser.new_context(viewport=SCREEN, reduced_motion="reduce")
     page = context.new_page()
     page.set_default_timeout(PATIENCE)
     context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": slowdown})

@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 import socket
+import threading
 from dataclasses import replace
 from urllib.parse import parse_qsl
 
@@ -121,7 +122,7 @@ def test_without_the_engine_the_lessons_have_no_laboratory(tmp_path, monkeypatch
 
 
 def answer(server, path, method="GET"):
-    connection = http.client.HTTPConnection("127.0.0.1", server._server.server_port, timeout=10.0)
+    connection = http.client.HTTPConnection("127.0.0.1", server._server.server_port, timeout=60.0)
     connection.request(method, path)
     response = connection.getresponse()
     body = response.read()
@@ -144,6 +145,7 @@ def test_the_server_gives_the_pages_and_nothing_else(tmp_path):
         assert answer(server, "/", "POST")[0] == 501
         other.write_text("later")
         assert answer(server, "/a.html")[2] == b"later"
+    assert not [thread for thread in threading.enumerate() if "serve_forever" in thread.name]  # it would spin
 
 
 def test_a_computer_without_a_network_names_itself(monkeypatch):
