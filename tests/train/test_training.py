@@ -126,7 +126,8 @@ def test_a_hexapod_of_a_file_is_trained_and_walks_in_an_experiment(tmp_path, mon
     assert policy.robot == "six_legs"
     options = ["--robot", "six_legs.toml", "--control", "made/velocity_six_legs.npz", "--quick"]
     assert main(["run", "displacement", *options]) == 0
-    assert "forward policy" in capsys.readouterr().out
+    assert "Too short to answer" in capsys.readouterr().out
+    assert "forward_policy" in (tmp_path / "out" / "displacement" / "outcome.json").read_text()
     assert read_design(file, Robot, ROBOTS).name == "six_legs"
     assert main(["run", "displacement", "--control", "made/velocity_six_legs.npz", "--quick"]) == 2
     assert "was trained for robot 'six_legs' with 6 limbs; robot 'caiman' has 4" in capsys.readouterr().err

@@ -40,11 +40,11 @@ WATER_MODELS: Mapping[str, WaterModel] = {
         min_reynolds=MIN_DRAG_REYNOLDS, max_reynolds=MAX_DRAG_REYNOLDS,
     ),
     "resistive": WaterModel(
-        label="resistive theory", omission="added mass, the surface and joints that yield",
+        label="resistive theory", omission="added mass, the surface and the compliance of the axis",
         min_reynolds=MIN_DRAG_REYNOLDS, max_reynolds=MAX_DRAG_REYNOLDS,
     ),
     "reactive": WaterModel(
-        label="reactive theory", omission="drag across the body, the surface and joints that yield",
+        label="reactive theory", omission="drag across the body, the surface and the compliance of the axis",
         min_reynolds=MIN_DRAG_REYNOLDS, needs_forward_speed=True,
     ),
     "slice": WaterModel(label="the flow in the plane", omission="the water over and under the body"),

@@ -461,20 +461,24 @@ class SwimFree(Experiment):
             measures: numbers of the run by name.
         """
         reynolds = self.frequency * self.robot.length**2 / Water().viscosity
-        ranges = {
-            "sections": (measures["speed_whole"], measures["speed_low"], measures["speed_high"], reynolds),
-            **{model: 3 * (measures[f"speed_whole_{model}"],) + (reynolds,) for model in _MODELS},
-            **{
-                model: 3 * (measures[f"speed_{model}"],) + (self.reynolds,)
-                for model in ("slice", "space")
-                if f"speed_{model}" in measures
-            },
+        sections = SpeedEstimate(
+            model="sections",
+            speed=measures["speed_whole"],
+            low=measures["speed_low"],
+            high=measures["speed_high"],
+            reynolds=reynolds,
+        )
+        speeds = {model: (measures[f"speed_whole_{model}"], reynolds) for model in _MODELS}
+        speeds |= {
+            model: (measures[f"speed_{model}"], self.reynolds)
+            for model in ("slice", "space")
+            if f"speed_{model}" in measures
         }
-        estimates = [
-            SpeedEstimate(model=model, speed=speed, low=low, high=high, reynolds=number)
-            for model, (speed, low, high, number) in ranges.items()
+        others = [
+            SpeedEstimate(model=model, speed=speed, low=speed, high=speed, reynolds=number)
+            for model, (speed, number) in speeds.items()
         ]
-        return real_water_speed(estimates, reynolds)
+        return real_water_speed([sections, *others], reynolds)
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast it swims in real water first, then what its parts, its cable and the flow do."""
