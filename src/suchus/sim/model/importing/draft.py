@@ -545,7 +545,7 @@ def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, mak
     return tail if separator and tail and has_same_head and unique else f"link_{number + 1}"
 
 
-def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
+def _foot(making: Making, parts: Sequence[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
     """Return the foot's centre in the robot's frame [m] and its radius [m].
 
     Args:
