@@ -22,7 +22,7 @@ from suchus.swimming.water import fit, printed_wave
 from suchus.swimming.water.setting import GROWS, SwimSetting
 from suchus.swimming.water.swim_setup import ResolvedSwim
 
-BEGIN = 0.25
+BEGIN = in_form(0.25, 0.02)
 """Time from which it is measured [s]."""
 
 
@@ -36,9 +36,9 @@ def spent(go, until):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--cells", type=int, default=in_form(80, 64), help="per body length")
+    options.add_argument("--cells", type=int, default=in_form(80, 32), help="per body length")
     options.add_argument(
-        "--until", type=float, default=in_form(1.25, 0.3), help="time that is swum, more than 0.25 [s]"
+        "--until", type=float, default=in_form(1.25, 0.08), help="time that is swum, more than 0.25 [s]"
     )
     options.add_argument("--plane", action="store_true", default=SHORT, help="swim in a slice")
     options.add_argument("--tail-height", type=float, default=0.0, help="of a fin on the last third [m]")

@@ -21,7 +21,7 @@ from suchus.sim.land import Lake, Run
 from suchus.sim.land.loop import Loop, physics_steps
 from suchus.swimming.water import fit, printed_wave
 
-RUNS, TICKS = 8, in_form(20, 2)  # TICKS control periods in a turn
+RUNS, TICKS = in_form(8, 2), in_form(20, 2)  # TICKS control periods in a turn
 TURNS, WARM = in_form(24, 1), in_form(3, 1)  # the first WARM turns do not count
 WAVE = fit(ROBOTS["caiman"], printed_wave(ROBOTS["caiman"], frequency=1.0)).gait
 GAIT = GAITS["belly_crawl"]

@@ -144,6 +144,7 @@ _OTHERS = (
     ),
     Kept(name="bench_flow", modules=(), renew="python bench/bench_flow.py --keep"),
     Kept(name="bench_gpu", modules=(), renew="python bench/bench_gpu.py --keep"),
+    Kept(name="bench_page", modules=(), renew="python bench/bench_page.py --keep"),
 )  # fmt: skip
 
 RESULTS: Mapping[str, Kept] = MappingProxyType(

@@ -20,6 +20,7 @@ from jaxtyping import install_import_hook
 import first_calls
 import programs as programs_of_tests
 from batteries import counted  # noqa: F401  a fixture
+from busy_threads import busy_threads
 from left_out import COLLECTED
 
 CHECKED = (
@@ -81,6 +82,14 @@ def pytest_collection_finish() -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup() -> None:
     first_calls.begin()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(nextitem: pytest.Item | None) -> Iterator[None]:
+    """Fail the last test of a worker if a thread computes on: it did so beside many of the tests."""
+    yield
+    if nextitem is None and (names := busy_threads()):
+        pytest.fail(f"a thread that some test began computes on: {', '.join(names)}")
 
 
 @pytest.fixture(scope="session")

@@ -16,6 +16,7 @@ RATIOS = {
     "bench_flow": r"an outline of its \d+ corners [\d.]+ ms: \d+\.\d+ times",
     "bench_kinematics": r"leg\.inverse .* \d+\.\d+ of leg\.forward",
     "bench_lake": r"swimming +\d+ +\d+\.\d+",
+    "bench_pictures": r"\d+ pictures/s, each as long as +\d+\.\d steps",
     "bench_land": r"\d+ environments .* ratio \d+\.\d+",
     "bench_page": r"over that at full speed: ratio \d+\.\d+",
     "bench_portable": r"of processor time: ratio \d+\.\d+",

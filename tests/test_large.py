@@ -95,9 +95,10 @@ def test_memory_is_the_machines_or_less_by_a_limit(monkeypatch):
 @pytest.mark.parametrize(("robot", "gait"), [("caiman", "belly_crawl"), ("swimmer", "undulation")])
 def test_estimates_are_of_the_size_of_what_a_run_takes(robot, gait):
     run = Run(robot=ROBOTS[robot], gait=GAITS[gait])
-    began = time.process_time()
+    simulate([run], duration=0.02)  # kernels are loaded, or compiled
+    began = time.thread_time()  # threads of other tests do not count
     record = simulate([run], duration=1.0)
-    took = time.process_time() - began
+    took = time.thread_time() - began
     assert record_bytes(run, record.sizes["time"]) == pytest.approx(record.nbytes, rel=0.3)
     assert 0.05 < processor_seconds(run, 1.0, record.attrs["timestep"]) / took < 20.0  # other machines and loads
 
@@ -219,7 +220,7 @@ def test_memory_that_runs_out_in_another_process_is_the_same_sentence(monkeypatc
 def test_with_a_real_limit_nothing_spins(tmp_path):
     line = 'ulimit -v 250000; exec "$0" -m suchus run displacement --quick --out "$1"'
     command = ["sh", "-c", line, sys.executable, str(tmp_path / "made")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "raise the limit" in done.stderr

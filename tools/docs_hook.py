@@ -36,7 +36,6 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         "paper_map.md": article.paper_map(),
         "misprints.md": article.misprints(),
         "questions.md": stated_page("questions"),
-        "verdicts.md": article.verdicts(),
     }
     for path, text in (made | reference.pages() | gallery.pages() | laboratory.pages()).items():
         files.append(File.generated(config, path, content=text))

@@ -1,7 +1,8 @@
 """Walks of the article's robot on servos as they were identified, into docs/servos.md and docs/pictures.
 
-Three robots: as it is in the catalog; with inertia and friction of an STS3215 at 7.4 V and the gains of the catalog;
-and with gains from inertia, delay and control period. Torque and speed stay those of the catalog.
+Four robots: with the servos that the catalog used to have; as in the catalog, with the mean of the identified servos;
+with inertia and friction of an STS3215 at 7.4 V and the gains of the catalog; and with gains from inertia, delay and
+control period. Torque and speed stay those of the catalog.
 
 Usage: python tools/identified_servos.py
 """
@@ -18,7 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from suchus.robot.control import Control, OpenLoop, Standing
-from suchus.robot.design import Robot, with_named_servos
+from suchus.robot.design import Robot, servo_names, with_named_servos
 from suchus.robot.motors.identified import identified_servo
 from suchus.robot.motors.servo_parameters import servo_parameters
 from suchus.robot.robots import ROBOTS
@@ -37,6 +38,8 @@ PAGE = Path(__file__).parents[1] / "docs" / "servos.md"
 PICTURE = PAGE.parent / "pictures" / "identified_servos.png"
 BLOCK = re.compile(r"(?<=<!-- walks: made by tools/identified_servos.py -->\n).*?(?=<!-- /walks -->)", re.DOTALL)
 SERVO = "STS3215 7.4 V, m1"
+FORMER = {"kd": 0.6, "armature": 0.005, "friction": 0.03, "damping": 0.05}
+"""Gain, rotor inertia, dry friction and damping of the servos that the catalog used to have."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +70,14 @@ def identified_robot(robot: Robot, *, has_new_gains: bool) -> Robot:
 
 
 def robots() -> dict[str, Robot]:
-    """Return the three robots by their names in the table."""
+    """Return the four robots by their names in the table."""
     caiman = ROBOTS["caiman"]
+    former = {name: replace(caiman.servo(name), **FORMER) for name in servo_names(caiman)}
     return {
+        "former": with_named_servos(caiman, former),
         "catalog": caiman,
-        "identified": identified_robot(caiman, has_new_gains=False),
-        "identified, new gains": identified_robot(caiman, has_new_gains=True),
+        "STS3215": identified_robot(caiman, has_new_gains=False),
+        "STS3215, new gains": identified_robot(caiman, has_new_gains=True),
     }
 
 
@@ -119,7 +124,7 @@ def draw(rows: Mapping[str, Mapping[str, Mapping[str, float]]]) -> None:
         labels = list(rows[tasks[0]])
         for k, label in enumerate(labels):
             values = [rows[task][label][quantity] for task in tasks]
-            panel.bar(np.arange(len(tasks)) + 0.27 * (k - 1), values, 0.25, label=label)
+            panel.bar(np.arange(len(tasks)) + 0.21 * (k - 0.5 * (len(labels) - 1)), values, 0.19, label=label)
         panel.set_xticks(range(len(tasks)), [task.replace(" ", "\n") for task in tasks])
         panel.set_ylabel(quantity)
     panels[1].legend(fontsize=7)

@@ -1,7 +1,7 @@
-"""Put what a full ``suchus reproduce`` found, and the catalog's questions, into the documentation.
+"""Put what a full ``suchus reproduce`` found into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, keeps the result
-``verdicts``, and writes the summary into the README. With ``--part`` OUT may hold some experiments only: of the others
+``verdicts``, and writes docs/verdicts.md and the summary of the README. With ``--part`` OUT may hold some experiments only: of the others
 what the documentation keeps is judged by the rules of today, and the other rows stay.
 """
 
@@ -11,16 +11,18 @@ from pathlib import Path
 from typing import Any
 
 from evidence import renew, store
+from pages import article
 from pages.stated import kept, templates, wrapped
 from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import fragile
 from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES, count_evidence
+from suchus.experiments.claims import RULES
 
 ROOT = Path(__file__).parents[1]
 NAME = "verdicts"
 README = ROOT / "README.md"
-_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models")
+PAGE = ROOT / "docs" / "verdicts.md"
+_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models", "why")
 
 
 def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
@@ -56,19 +58,16 @@ def judged_again() -> dict[str, dict[str, Any]]:
             verdict = judge(rule, kept(rule.experiment))
             row = {"verdict": verdict.verdict, "measured": verdict.measured, "low": verdict.low, "high": verdict.high}
             models = ladder.rows(verdict.voices, rule.form)
-            row |= {"unit": verdict.claim.unit, "fragile": verdict.fragile}
+            row |= {"unit": verdict.claim.unit, "fragile": verdict.fragile, "why": verdict.why}
             found[rule.claim] = row | ({"models": models} if models else {})
     return found
 
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:
-    """Return the README with result, summary and questions in their places, of the words in ``docs/stated/readme``."""
-    count = count_evidence(
-        {claim: row["verdict"] for claim, row in table.items()}, [c for c, row in table.items() if row["fragile"]]
-    )
-    told: dict[str, Any] = {name: kept(name) for name in ("crawl_stability", "joint_faults", "servo_loads")}
-    for name in ("verdicts", "result", "questions"):
-        text = templates().get_template(f"readme/{name}.md").render(verdicts=table, count=count, **told)
+    """Return the README with results and summary in their places, of the words in ``docs/stated/readme``."""
+    content = article.front(table)
+    for name in ("verdicts", "result"):
+        text = templates().get_template(f"readme/{name}.md").render(root="docs/", **content)
         start, end = f"<!-- {name}: made by tools/verdict_table.py -->", f"<!-- /{name} -->"
         readme = _between(readme, start, end, wrapped(text, width=len(text)).rstrip("\n"))
     return readme
@@ -80,10 +79,11 @@ def _between(text: str, start: str, end: str, middle: str) -> str:
 
 
 def main(out: Path, *, part: bool) -> None:
-    """Write table and README."""
+    """Write table, README and the page of the verdicts."""
     table = collected(out, part=part)
     (store.save_part if part else renew.store)(NAME, table)
     README.write_text(written(README.read_text(encoding="utf-8"), table), encoding="utf-8")
+    PAGE.write_text(article.verdicts(table), encoding="utf-8")
 
 
 if __name__ == "__main__":

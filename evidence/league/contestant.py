@@ -89,6 +89,8 @@ class Contestant:
     """The models that can be asked, by name, the cheapest first."""
     excluded_models: Mapping[str, str] = field(default_factory=dict)
     """Why other models cannot be asked, in a phrase, by name."""
+    find_unsteadiness: Callable[[Mapping[str, float]], str] | None = None
+    """Returns why what was measured, by quantity, is no steady swim; empty if it can be one. None: no rule is known."""
 
     def __post_init__(self) -> None:
         for name, number in self.inputs.items():

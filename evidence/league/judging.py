@@ -9,9 +9,10 @@ from evidence.league.contestant import Interval
 from evidence.league.sealing import Measured
 from suchus.article.verdict import Clause
 
-Word = Literal["within", "within, wide", "missed"]
+Word = Literal["within", "within, wide", "missed", "not a steady swim"]
 """``within``: what was measured, in its own interval, meets that of the prediction. ``within, wide``: so, but the
-interval is wider than a factor of ``WIDEST``, which says little. ``missed``: they do not meet."""
+interval is wider than a factor of ``WIDEST``, which says little. ``missed``: they do not meet. ``not a steady swim``:
+what was measured contradicts itself as a steady swim, so that no prediction of one can be judged by it."""
 WORDS: tuple[Word, ...] = get_args(Word)
 WIDEST = 4.0
 """Greatest ratio of the ends of an interval that counts as a prediction [-]: a factor of two to either side; set before
@@ -32,12 +33,32 @@ class Judgement(NamedTuple):
     """Value of the prediction over what was measured, the worst of several numbers [-]."""
 
 
-def judged(interval: Interval, measured: Measured) -> Judgement:
+def unsteady_wave(speed: float, wave_speed: float) -> str:
+    """Return why a filmed swim is no steady swim by its body wave; empty if it can be one.
+
+    A body wave that runs backwards along the body at c gives thrust only while the body swims slower than c.
+
+    Args:
+        speed: speed of the swim U [body length/s].
+        wave_speed: filmed frequency times filmed wavelength c [body length/s].
+
+    Source: Lighthill 1960, J. Fluid Mech. 9, 305.
+    """
+    if speed < wave_speed:
+        return ""
+    return (
+        f"it swims at {speed:.3g} body lengths a second, and its body wave, frequency times wavelength as printed, "
+        f"runs at {wave_speed:.3g}; a wave drives a body only below its own speed"
+    )
+
+
+def judged(interval: Interval, measured: Measured, *, is_steady: bool = True) -> Judgement:
     """Return what became of a prediction; of several numbers in a row each must be within.
 
     Args:
         interval: the prediction.
         measured: what was measured, in the same unit.
+        is_steady: whether what was measured can be that of a steady swim.
     """
     columns = [
         np.atleast_1d(np.asarray(one, float)) for one in (*interval, measured.value, measured.low, measured.high)
@@ -49,7 +70,7 @@ def judged(interval: Interval, measured: Measured) -> Judgement:
         met = all(clause.holds(measures) for clause in _MEETS)
         words.append("missed" if not met else "within" if _TELLS.holds(measures) else "within, wide")
         ratios.append(float(value / truth) if truth else inf)
-    worst: Word = max(words, key=WORDS.index)
+    worst: Word = max(words, key=WORDS.index) if is_steady else "not a steady swim"
     return Judgement(worst, max(ratios, key=lambda ratio: abs(np.log(ratio)) if 0.0 < ratio < inf else inf))
 
 

@@ -23,7 +23,12 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
 """Files of the page."""
 _WIDTH = 118
-_BOLD: Mapping[Word, str] = {"within": "within", "within, wide": "within, wide", "missed": "**missed**"}
+_BOLD: Mapping[Word, str] = {
+    "within": "within",
+    "within, wide": "within, wide",
+    "missed": "**missed**",
+    "not a steady swim": "not a steady swim",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,11 +51,19 @@ class LeagueEntry:
     """Seal of the prediction."""
     measured: Mapping[str, Measured]
     """By quantity; empty where nothing is public."""
+    unsteadiness: str = ""
+    """Why what was measured is no steady swim, in a phrase; empty where it can be one."""
 
     def judgements(self) -> list[tuple[str, str, Interval, Measured, Judgement]]:
         """Return quantity, rung, prediction, measurement and verdict of all that was measured."""
         return [
-            (quantity, rung, one, self.measured[quantity], judged(one, self.measured[quantity]))
+            (
+                quantity,
+                rung,
+                one,
+                self.measured[quantity],
+                judged(one, self.measured[quantity], is_steady=not self.unsteadiness),
+            )
             for quantity, rungs in self.prediction.items()
             if quantity in self.measured
             for rung, one in rungs.items()
@@ -69,6 +82,8 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
         UnreadableFile: the prediction is not sealed, or the measurement says something else than is predicted.
     """
     folder = out / contestant.name
+    truth = opened(folder, contestant.predicts, measured)
+    find = contestant.find_unsteadiness
     return LeagueEntry(
         name=contestant.name,
         title=contestant.title,
@@ -77,12 +92,15 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
         units={name: one.unit for name, one in contestant.predicts.items()},
         prediction=read_prediction(folder),
         seal=read_seal(folder),
-        measured=opened(folder, contestant.predicts, measured),
+        measured=truth,
+        unsteadiness=find({name: _first(one.value) for name, one in truth.items()}) if find and truth else "",
     )
 
 
 _STORED_KEYS = {"explanation": "about"}
 """Keys of the stored standings that differ from the fields' names."""
+_LATER_FIELDS = ("unsteadiness",)
+"""Fields that older stored standings lack."""
 
 
 def standing_text(standings: Sequence[LeagueEntry]) -> str:
@@ -126,7 +144,8 @@ def standing_of(data: Any) -> LeagueEntry:
         name: Measured(**(one | {end: bound_value(one[end]) for end in ("value", "low", "high")}))
         for name, one in data["measured"].items()
     }
-    fields = {name: data[_STORED_KEYS.get(name, name)] for name in LeagueEntry.__dataclass_fields__}
+    keys = {name: _STORED_KEYS.get(name, name) for name in LeagueEntry.__dataclass_fields__}
+    fields = {name: data[key] for name, key in keys.items() if name not in _LATER_FIELDS or key in data}
     return LeagueEntry(**(fields | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
 
 
@@ -197,10 +216,11 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         "*Within*: measurement and interval meet; *wide*: so, but the interval is wider than a factor of "
         f"{WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
         "",
-        f"Of {len(every)} predictions that could be judged here {counts['missed']} missed, "
-        f"{counts['within, wide']} were "
+        f"Of {len(every) - counts['not a steady swim']} predictions that could be judged here "
+        f"{counts['missed']} missed, {counts['within, wide']} were "
         f"within a wide interval and {counts['within']} within a narrower one.",
         "",
+        *_unsteady(standings),
         f"![Predictions over what was measured, by model; the interval should reach across 1]({picture})",
         "",
         _TRIALS,
@@ -260,6 +280,14 @@ _OWN = (
     "sentence. "
     "`--models resistive reactive sections` leaves out the flows, which take minutes each.",
 )
+
+
+def _unsteady(standings: Sequence[LeagueEntry]) -> list[str]:
+    """Return which measurements are no steady swims, and why; nothing where all can be judged."""
+    reasons = [f"* {one.name}: {one.unsteadiness}." for one in standings if one.unsteadiness]
+    if not reasons:
+        return []
+    return ["Of these swims no prediction is judged: what was measured is not a steady swim.", "", *reasons, ""]
 
 
 def _misses(every: Sequence[tuple[LeagueEntry, str, str, Interval, Measured, Judgement]]) -> list[str]:

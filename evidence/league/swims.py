@@ -461,8 +461,6 @@ def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -
             slow = theory(model, water, starts=False)
             if real.speed > 0.0 and slow.speed > 0.0:  # a tail that ends in a point sheds nothing there
                 answers.append(_brought(grid, real, slow))
-        if real.speed > 0.0:
-            answers.append(real._replace(periods=real.periods[: len(grids[0].periods)]))
     if not answers:
         raise NotConverged("no theory swims forward in thick and in real water, to bring the flow there.")
     middle = answers[0]._replace(
@@ -476,8 +474,8 @@ def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -
 def _brought(grid: SwimPrediction, real: SwimPrediction, slow: SwimPrediction) -> SwimPrediction:
     """Return a swim in thick water as it would be in real water, were the flow then as far from the theory as it is.
 
-    It may be nearer: what a theory leaves out, the layers of thick water, is thinner there. So the theory's own answer
-    is the other end of what is plausible.
+    It may be nearer: what a theory leaves out, the layers of thick water, is thinner there. The theory's own answer is
+    that of another model and is no part of this one's.
 
     Args:
         grid: the swim in the flow.

@@ -87,7 +87,11 @@ def test_a_servo_like_another_keeps_its_loop_and_gear():
     one = Servo.from_motor(motor("XM430-W350"), template=other)
     assert replace(one, torque=3.0, speed=7.0, winding=None) == other
     own = Servo.from_motor(replace(motor("XM430-W350"), stall_torque=3.0))
-    assert (own.kp, own.kd, own.armature, own.friction, own.damping) == pytest.approx((40.0, 0.6, 5e-3, 0.03, 0.05))
+    numbers = (own.kp, own.kd, own.armature, own.friction, own.damping)
+    assert numbers == pytest.approx((40.0, 1.5, 9.15e-3, 0.0456, 0.0162))
+    weak = Servo.from_motor(replace(motor("XM430-W350"), stall_torque=3.0), 10.0)
+    assert weak.torque < own.torque
+    assert (weak.armature, weak.friction, weak.damping) == (own.armature, own.friction, own.damping)
 
 
 def test_a_supply_that_it_does_not_bear_is_refused():

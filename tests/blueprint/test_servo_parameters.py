@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suchus.core.errors import InvalidDesign
-from suchus.robot.design import with_named_servos
+from suchus.robot.design import Servo, with_named_servos
+from suchus.robot.motors import motor
 from suchus.robot.motors.identified import identified_servo, identified_servos
 from suchus.robot.motors.servo_parameters import (
     MAX_STEP_ANGLE,
@@ -19,7 +20,7 @@ from suchus.robot.motors.servo_parameters import (
     phase_margin,
     servo_parameters,
 )
-from suchus.robot.robots import ROBOTS
+from suchus.robot.robots import ROBOTS, caiman
 from suchus.sim.model import compile_model
 
 LEG = ROBOTS["caiman"].servo("LF_yaw")
@@ -83,7 +84,7 @@ def test_mujoco_gets_what_was_identified():
     assert (servo.torque, servo.speed, servo.winding) == (LEG.torque, LEG.speed, LEG.winding)
     assert servo.kp == LEG.kp
     assert servo.kd == pytest.approx(2.0 * (servo.kp * servo.armature) ** 0.5 - servo.damping)
-    assert servo.kd > 2.5 * LEG.kd
+    assert servo.kd > 1.3 * LEG.kd
     caiman = ROBOTS["caiman"]
     model = compile_model(with_named_servos(caiman, {"LF_yaw": servo}))
     dof = int(model.joint("LF_yaw").dofadr[0])
@@ -145,3 +146,21 @@ def test_critical_damping_is_what_it_says():
     assert gains.kd**2 == pytest.approx(4 * gains.kp * 0.02)
     assert gains.natural_frequency == pytest.approx((10.0 / 0.02) ** 0.5)
     assert gains.phase_margin < pi / 2
+
+
+def test_a_servo_that_is_bought_has_the_mean_of_the_identified_ones():
+    """The rule of ``Servo.from_motor``, and with it the robot of the catalog."""
+    bought = motor("STS3250")
+    estimates = estimated_parameters(bought.stall_torque)
+    for servo in (Servo.from_motor(bought), ROBOTS["caiman"].servo("LH_pitch")):
+        for name, estimate in estimates.items():
+            assert getattr(servo, name) == pytest.approx(estimate.value, rel=0.01), name
+
+
+def test_the_ranges_of_the_catalog_are_one_standard_deviation():
+    estimates = estimated_parameters(motor("STS3250").stall_torque)
+    rows = {row.field: row for row in caiman.chosen}
+    for name, estimate in estimates.items():
+        row = rows[f"hind_leg.servo.{name}"]
+        assert row.low == pytest.approx(estimate.value / estimate.factor, rel=0.05), name
+        assert row.high == pytest.approx(estimate.value * estimate.factor, rel=0.05), name

@@ -26,7 +26,7 @@ READS = tuple(
     f"animals/capture/{name}.py"
     for name in (
         *("angles", "animal", "camera", "cycle", "exchange", "feet", "film", "late", "names", "pauses", "screen"),
-        *("strides", "swings", "tracks", "walk"),
+        *("strides", "surface", "swings", "tracks", "walk"),
     )
 )
 """What films are made and read with; the rest of the room reads no number."""

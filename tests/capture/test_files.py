@@ -167,7 +167,7 @@ def test_what_is_up_does_not_depend_on_where_the_animal_goes(lizard, noisy):
     for heading in (0.0, 1.57, 2.1, -2.5):
         camera = replace(noisy, heading=heading, heights=True, noise=0.0)
         tracks = film_animal(lizard, camera, cycles=4)
-        np.testing.assert_array_equal(upright(tracks.position, tracks.points, "it"), tracks.position)
+        np.testing.assert_array_equal(upright(tracks.position, tracks.points), tracks.position)
 
 
 KINDS = ("DeepLabCut.h5", "DeepLabCut.csv", "SLEAP.analysis.h5", "SLEAP.slp", "Anipose.csv")

@@ -139,6 +139,7 @@ def test_intervals_of_two_hundred_animals_hold_the_truth():
     print(f"\n{len(read)} of 200 animals could be read")
     assert len(read) >= 190
     for name in truth(drawn(0)):
-        right = sum(one[name] for one in read)
-        print(f"  {name:16s} {right} of {len(read)} intervals hold the truth")
-        assert right >= binom.ppf(0.01, len(read), 0.95), name
+        held_of_name = [one[name] for one in read if name in one]  # of a keypoint that is left out nothing is known
+        assert len(held_of_name) >= 0.98 * len(read), name
+        print(f"  {name:16s} {sum(held_of_name)} of {len(held_of_name)} intervals hold the truth")
+        assert sum(held_of_name) >= binom.ppf(0.01, len(held_of_name), 0.95), name

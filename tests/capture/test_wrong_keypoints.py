@@ -100,7 +100,6 @@ def test_a_film_from_the_side_shows_no_lag():
     clock = Clock(np.array([0.0, animal.period]), np.array([0.0, 1.0]), animal.period)
     beside = replace(tracks, position=tracks.position[..., [0, 2]])
     assert not find_late_keypoints(tracks, clock, tracks.time)
-    assert find_late_keypoints(beside, clock, tracks.time)  # taken for a film from above
     assert not find_late_keypoints(replace(beside, view="side"), clock, tracks.time)
 
 

@@ -2,12 +2,14 @@
 
 import json
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import suchus
-from suchus.apps.cli import main
+from suchus.apps.cli import main, options
+from suchus.apps.cli.entry import COMMANDS
 from suchus.core.errors import UnreadableFile
 from suchus.robot.robots import ROBOTS
 
@@ -20,6 +22,83 @@ def desk(tmp_path, monkeypatch):
         shutil.copy(FILES / name, tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+WITH_ROBOT = {  # first words of each command that takes a robot
+    "run": ["run", "gait_diagram"],
+    "capture": ["capture", "tracks.csv"],
+    "view": ["view"],
+    "page": ["page"],
+    "replay": ["replay", "record.nc"],
+    "optimise": ["optimise", "crawl"],
+    "train": ["train", "velocity"],
+    "export": ["export"],
+    "size": ["size"],
+    "parts": ["parts"],
+    "export-commands": ["export-commands", "belly_crawl"],
+    "emulate": ["emulate"],
+    "drive": ["drive", "belly_crawl"],
+    "calibrate": ["calibrate", "zero"],
+}
+TAKES_ROBOT = {command.name: command for command in COMMANDS if "robot" in (command.first_word, *command.shelf_options)}
+
+
+class ReadOptionsError(Exception):
+    """Takes the options of a command out of it before its work begins."""
+
+
+@pytest.fixture
+def read_options(monkeypatch):
+    """Return a function that reads a command line as its command does, and returns the options."""
+
+    def parse(*args, **named):
+        raise ReadOptionsError(true_parse(*args, **named))
+
+    true_parse = options.parse
+    modules = {command.function.partition(":")[0] for command in TAKES_ROBOT.values()} | {options.__name__}
+    for module in map(import_module, modules):
+        if hasattr(module, "parse"):
+            monkeypatch.setattr(module, "parse", parse)
+
+    def read(words):
+        with pytest.raises(ReadOptionsError) as caught:
+            main(words)
+        return caught.value.args[0]
+
+    return read
+
+
+def test_every_command_that_takes_a_robot_is_tried():
+    assert WITH_ROBOT.keys() == TAKES_ROBOT.keys()
+
+
+@pytest.mark.parametrize("file", ["walker.urdf", "fourleg.xml"])
+@pytest.mark.parametrize("name", WITH_ROBOT)
+def test_every_command_takes_a_file_of_another_tool(name, file, desk, read_options):
+    Path("tracks.csv").write_text("time [s],hip_x [mm],hip_y [mm]\n0,1,2\n")
+    Path("record.nc").write_bytes(b"")
+    ways = [["--robot", file], [f"--robot={file}"], ["--robot", f"./{file}"], ["--robot", str(desk / file)]]
+    if TAKES_ROBOT[name].first_word == "robot":
+        ways = [[file], *(ways if "robot" in TAKES_ROBOT[name].shelf_options and name != "emulate" else ())]
+    for words in ways:
+        settings = read_options([*WITH_ROBOT[name], *words])
+        robot = settings.experiment.robot if name == "run" else settings.robot
+        assert robot.name == Path(file).stem
+
+
+@pytest.mark.parametrize("name", WITH_ROBOT)
+def test_no_command_takes_a_file_that_is_none(name, desk, capsys):
+    Path("tracks.csv").write_text("time [s],hip_x [mm],hip_y [mm]\n0,1,2\n")
+    Path("record.nc").write_bytes(b"")
+    Path("broken.urdf").write_text("<robot name='it'><link name='a'/></robot>")
+    before = sorted(desk.rglob("*"))
+    positional = TAKES_ROBOT[name].first_word == "robot"
+    for file in ("none.urdf", "broken.urdf"):
+        assert main([*WITH_ROBOT[name], *([file] if positional else ["--robot", file])]) == 2
+        out, err = capsys.readouterr()
+        assert (out, err.count("\n")) == ("", 1)
+        assert file in err
+    assert sorted(desk.rglob("*")) == before
 
 
 @pytest.mark.parametrize("name", ["walker.urdf", "minnow.xml"])

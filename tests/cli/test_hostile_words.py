@@ -50,7 +50,7 @@ def run(words, **settings):
     command = [sys.executable, "-m", "suchus", *words]
     environment = {**os.environ, **settings.pop("env", {})}
     return subprocess.run(
-        command, stderr=subprocess.PIPE, text=True, timeout=120, env=environment, check=False, **settings
+        command, stderr=subprocess.PIPE, text=True, timeout=600, env=environment, check=False, **settings
     )
 
 

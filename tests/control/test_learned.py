@@ -18,6 +18,7 @@ from suchus.robot.control.policy import (
     ACTIONS,
     Layer,
     Networks,
+    Replicate,
     action_mirror,
     interpolate,
     mirror_shift,
@@ -310,3 +311,51 @@ def test_a_table_has_no_onnx(tmp_path):
     pytest.importorskip("onnx", reason="not installed: pip install 'suchus[onnx]'")
     with pytest.raises(InvalidDesign, match="is a table without a network"):
         export_onnx(table_policy(), CAIMAN, tmp_path / "t.onnx")
+
+
+def seeded_policy():
+    """Return a policy with a network that carries another seed with a network, and one without."""
+    other = Replicate(
+        seed=7,
+        speeds=(0.0, 0.05, 0.1),
+        turns=(0.0, 0.2),
+        table=((tuple(ACTIONS[name].neutral for name in NAMES),) * 2,) * 3,
+        layers=network_policy(seed=8).layers,
+        training=(("error", "0.2"),),
+    )
+    policy = network_policy(training=(("command", "suchus train velocity --seeds 3"), ("seed", "5"), ("error", "0.1")))
+    return replace(policy, replicates=(other, replace(other, seed=6, layers=())))
+
+
+def test_a_file_carries_the_policies_of_other_seeds(tmp_path):
+    policy = seeded_policy()
+    path = save_policy(policy, tmp_path / "seeds.npz")
+    read = load_policy(path)
+    assert read == policy
+    assert policy_bytes(read) == path.read_bytes()
+    first, second, third = read.seeds
+    assert first == replace(policy, replicates=())
+    assert second.layers == network_policy(seed=8).layers
+    assert second.speeds == (0.0, 0.05, 0.1)
+    assert dict(second.training) == {"command": "suchus train velocity --seeds 3", "seed": "7", "error": "0.2"}
+    assert third.layers == third.actions == ()
+    assert np.abs(commands(Learned(policy=second, forward=0.1), CAIMAN)[-1]).max() > 0.0
+    assert len(path.read_bytes()) < 1.6 * len(policy_bytes(first))
+
+
+def test_a_replicate_whose_network_does_not_fit_is_refused(tmp_path):
+    policy = seeded_policy()
+    with pytest.raises(InvalidDesign, match="needed, one for each column"):
+        replace(policy, replicates=(replace(policy.replicates[0], layers=(Layer(((0.0,),), (0.0,)),)),))
+    path = save_policy(policy, tmp_path / "one.npz")
+    with pytest.raises(UnreadableFile, match="not finite"):
+        load_policy(rewritten(path, "replicate_0_table", np.full((3, 2, 4), np.inf)))
+
+
+def test_a_failure_that_the_policy_cannot_read_is_said():
+    servo = layout(CAIMAN).servos[0]
+    control = Learned(policy=table_policy(), forward=0.1, failures=((1.0, servo),))
+    with pytest.warns(Doubtful, match=f"failures names {servo}, and policy 'test' reads no failures"):
+        control.start(Runs.identical(control, CAIMAN, default_gait(CAIMAN)), PERIOD)
+    with pytest.raises(InvalidDesign, match=r"failures has a failure at -1\.0 s"):
+        Learned(policy=table_policy(), failures=((-1.0, servo),))

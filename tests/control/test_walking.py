@@ -89,7 +89,7 @@ def test_attitude_feedback_keeps_the_high_walk_on_its_feet_on_bumps(robot):
     way = displacement(record).sel(xyz="x").values.reshape(2, -1)
     assert way[1].min() > 1.0 > way[0].min()
     roll = np.abs(tilt(time_window(record))["roll"]).max("time").values.reshape(2, -1)
-    assert np.degrees(roll[1]).max() < 25 < np.degrees(roll[0]).max()
+    assert np.degrees(roll[1]).max() < 20 < np.degrees(roll[0]).max()
 
 
 BUMPS = Ground(relief=Bumps(height=0.03, correlation=0.1, start=0.42, seed=1))

@@ -113,7 +113,7 @@ BAD = {
     ),
     "servos of a larger robot": (
         lambda: with_segment(SMALL, "pelvis", hinges=(STRONG,)),
-        r"armature of 0.005 kg m2, .*belongs to a larger robot",
+        r"armature of 0.015 kg m2, .*belongs to a larger robot",
     ),
 }  # fmt: skip
 

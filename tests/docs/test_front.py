@@ -26,7 +26,7 @@ LIGHT = 1_500_000
 @cache
 def made():
     """Return the pages that the build makes; to find them reads all sources, so not while tests are collected."""
-    return {"questions.md", "verdicts.md", "paper_map.md", "misprints.md", *reference.pages(), *gallery.pages()}
+    return {"questions.md", "paper_map.md", "misprints.md", *reference.pages(), *gallery.pages()}
 
 
 def marks(path):
@@ -63,14 +63,14 @@ def test_every_link_arrives_in_the_built_site(page):
 
 
 def test_a_dead_link_is_noticed():
-    verdict = "../results/verdicts.json#flight"
+    verdict = "verdicts.md#flight"
     text = f"[a](nowhere.md) [b](index.md#nowhere) [c](index.md#start) [d]({verdict}) `[e](no.md)` [f](x:y)"
     assert dead("docs/index.md", text) == ["nowhere.md", "index.md#nowhere", verdict]
 
 
 def test_what_the_site_makes_pages_of_is_led_to_them():
-    page = "[a](../results/verdicts.json#tail_swing) [b](../examples/04_kinematics.py) [c](../src/suchus/sim/metrics)"
-    assert links.built(page) == "[a](verdicts.md#tail_swing) [b](examples/04_kinematics.md) [c](api/sim.metrics.md)"
+    page = "[a](../src/suchus/article/paper/errata.py) [b](../examples/04_kinematics.py) [c](../src/suchus/sim/metrics)"
+    assert links.built(page) == "[a](misprints.md) [b](examples/04_kinematics.md) [c](api/sim.metrics.md)"
     assert {page.partition("#")[0] for page in links.MADE.values()} <= made()
     assert all((ROOT / "docs" / source).exists() for source in links.MADE)
 
@@ -88,7 +88,7 @@ def test_no_link_of_the_package_index_is_relative():
     shown = for_the_index(readme)
     assert links.found(readme)
     assert links.found(shown) == []
-    assert "| want to see it walk | getting started |" in shown
+    assert "| want to see it walk | getting started, the laboratory in one page |" in shown
     assert "![" not in shown
     assert for_the_index("[a](https://b.c/d)\n\n![e](https://f.g/h.png)\n\n") == (
         "[a](https://b.c/d)\n\n![e](https://f.g/h.png)\n\n"

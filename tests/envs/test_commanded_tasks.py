@@ -9,15 +9,30 @@ pytest.importorskip("gymnasium", reason="not installed: pip install 'suchus[gym]
 
 import gymnasium
 
-from suchus.apps.envs import TASKS, Breaks, CommandRanges, CrocodileVectorEnv, GaitFollower, play, reading_columns
+from suchus.apps.envs import (
+    TASKS,
+    Breaks,
+    CommandRanges,
+    CrocodileVectorEnv,
+    GaitFollower,
+    mirror_actions,
+    mirror_observations,
+    play,
+    reading_columns,
+)
 from suchus.core.errors import InvalidDesign, UnknownName
 from suchus.robot.control.observation import FAILURE_READINGS, observation_layout
+from suchus.robot.control.policy import mirror_shift
 from suchus.robot.design import layout
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
+from suchus.sim.land import Ground, Tolerances
+from suchus.sim.land.lake import gravity
+from suchus.sim.model import compile_model
 
 VELOCITY = TASKS["Velocity"]
-STRIDER = VELOCITY.for_robot(ROBOTS["strider"])
+AS_DESIGNED = {"tolerances": None, "slope": 0.0}
+STRIDER = replace(VELOCITY.for_robot(ROBOTS["strider"]), **AS_DESIGNED)
 
 
 def follower(task, env):
@@ -134,3 +149,103 @@ def test_what_cannot_be_is_refused():
         CommandRanges(forward=(0.2, 0.1))
     assert "failure" in FAILURE_READINGS
     assert GAITS["low_crawl"] == VELOCITY.gait
+    with pytest.raises(InvalidDesign, match=r"task\.slope is 1 rad"):
+        replace(VELOCITY, slope=1.0)
+    with pytest.raises(InvalidDesign, match="a goal lies on the ground as it is"):
+        replace(TASKS["Swim"], slope=0.1)
+    with pytest.raises(InvalidDesign, match="in which every robot is as designed"):
+        replace(TASKS["Swim"], lake=None, goal=None, water="slice", tolerances=Tolerances())
+    with pytest.raises(InvalidDesign, match=r"task\.tolerances is 'loose'; a Tolerances or None is needed"):
+        gymnasium.make("suchus/Velocity-v0", tolerances="loose")
+
+
+def test_velocity_has_built_robots_slopes_delay_and_noise_by_default():
+    assert VELOCITY.tolerances == Tolerances()
+    assert min(VELOCITY.slope, VELOCITY.delay, VELOCITY.noise) > 0.0
+    assert VELOCITY.tolerances.backlash > 0.0
+
+
+@pytest.mark.parametrize(
+    ("task", "robot"), [("Velocity", "caiman"), ("Velocity", "strider"), ("Swim", "floating_caiman")]
+)
+def test_each_episode_has_the_robot_of_its_seed(task, robot):
+    chosen = replace(TASKS[task].for_robot(ROBOTS[robot]), tolerances=Tolerances(), slope=0.0)
+    env = CrocodileVectorEnv(2, chosen)
+    env.reset(seed=[3, 4])
+    env.reset(seed=[5, None], options={"reset_mask": np.array([True, False])})
+    pack = env.pack
+    run = pack.loop.runs[0]
+    for i, chance in enumerate(pack.chances):
+        built = Tolerances().draw_run(run, chance.body_seed)
+        model = compile_model(built.robot, chosen.timestep)
+        body_mass = pack.loop.batch.field("body_mass", i)
+        assert body_mass[: model.nbody] == pytest.approx(model.body_mass, rel=1e-12)
+        assert not np.allclose(body_mass[: model.nbody], compile_model(chosen.robot, chosen.timestep).body_mass)
+        friction = pack.loop.batch.field("geom_friction", i)[1:, 0]
+        assert friction == pytest.approx(built.ground.friction_scale * pack.loop.batch.model.geom_friction[1:, 0])
+        errors = pack.loop.disturbances
+        assert errors._zero_error[errors._inexact_sims.index(i)].tolist() == list(built.zero_error)
+        assert (2 * errors._half_play[errors._inexact_sims.index(i)]).tolist() == pytest.approx(list(built.play))
+    assert pack.chances[0].body_seed != pack.chances[1].body_seed
+
+
+def test_an_episode_depends_on_its_seed_and_not_on_the_robots_beside_it_or_before_it():
+    def final(env, seeds, row):
+        env.reset(seed=seeds)
+        for action in actions:
+            seen, *_ = env.step(np.tile(action, (env.num_envs, 1)))
+        return seen[row].tobytes()
+
+    task = VELOCITY.for_robot(ROBOTS["strider"])
+    actions = np.random.default_rng(0).uniform(-0.3, 0.3, (8, len(layout(task.robot).servos)))
+    three, one = CrocodileVectorEnv(3, task), CrocodileVectorEnv(1, task)
+    alone = final(one, 8, 0)
+    assert final(three, 7, 1) == alone
+    assert final(one, 9, 0) != alone
+    assert final(one, 8, 0) == alone
+
+
+def test_fast_physics_has_the_longest_step_unless_another_is_named():
+    assert gymnasium.make("suchus/Velocity-v0", fast=True).unwrapped.task.timestep == 0.01
+    assert gymnasium.make("suchus/Velocity-v0", fast=True, timestep=0.005).unwrapped.task.timestep == 0.005
+    assert gymnasium.make("suchus/Velocity-v0").unwrapped.task.timestep == 0.005
+
+
+def test_the_slope_of_an_episode_is_drawn():
+    env = CrocodileVectorEnv(3, replace(VELOCITY, tolerances=None, ground=Ground(uphill=0.1)))
+    env.reset(seed=1)
+    slopes = []
+    for i, chance in enumerate(env.pack.chances):
+        expected = gravity(Ground(uphill=0.1 + chance.uphill, sideways=chance.sideways))
+        assert env.pack.loop.batch.field("opt.gravity", i) == pytest.approx(expected)
+        slopes += [chance.uphill, chance.sideways]
+    assert len(set(slopes)) == 6
+    assert np.abs(slopes).max() <= VELOCITY.slope
+
+
+@pytest.mark.parametrize("robot", ["caiman", "strider", "pleurobot"])
+def test_a_mirrored_robot_observes_the_mirror_image_to_the_last_digits(robot):
+    """Two robots of which one does the mirror image of the other: the property that mirrored experience rests on."""
+    commands = CommandRanges(forward=(0.09, 0.1), turn=(-0.0001, 0.0001))
+    plain = {**AS_DESIGNED, "noise": 0.0, "delay": 0.0, "jitter": 0.0}
+    task = replace(VELOCITY.for_robot(ROBOTS[robot]), **plain, commands=commands)
+    env = CrocodileVectorEnv(2, task)
+    env.reset(seed=1)
+    env.pack._phases[1] = env.pack._phases[0] + mirror_shift(task.gait)
+    random = np.random.default_rng(0)
+    for _ in range(20):
+        action = random.uniform(-0.4, 0.4, env.action_space.shape[1])
+        seen, *_ = env.step(np.stack([action, mirror_actions(action, task)]))
+    mirrored = mirror_observations(seen[0], task)
+    column = {sense.name: sense.columns for sense in observation_layout(task.robot, task.observed)}
+    compared = np.ones(len(mirrored), dtype=bool)
+    compared[column["command"]] = False
+    assert seen[1][compared] == pytest.approx(mirrored[compared], abs=1e-3)
+    assert np.abs(seen[1] - seen[0])[column["servo_position"]].max() > 0.05
+
+
+def test_a_gait_without_a_mirror_image_has_no_mirrored_observations():
+    lopsided = replace(GAITS["belly_crawl"], limb_phases=(0.0, 0.3, 0.5, 0.9))
+    task = replace(TASKS["Crawl"], gait=lopsided)
+    with pytest.raises(InvalidDesign, match="is not symmetric"):
+        mirror_observations(np.zeros(101, dtype=np.float32), task)

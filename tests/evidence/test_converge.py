@@ -107,6 +107,8 @@ def test_finished_parts_are_taken_if_the_same_code_made_them(tmp_path):
 def test_a_stopped_program_goes_on_where_it_stopped(tmp_path, monkeypatch, capsys):
     kept = []
     monkeypatch.setattr(converge, "PARTS", tmp_path)
+    code = SimpleNamespace(reached=lambda modules: modules, digest=lambda modules: "code")  # in place of all sources
+    monkeypatch.setattr(converge, "source", code)
     monkeypatch.setattr(converge, "_stored", lambda: {"quick": {}, "full": {}, "designs": {}})
     monkeypatch.setattr(converge, "_keep", lambda outcome, seconds: kept.append(json.loads(json.dumps(outcome))))
     stopped, resumed = Synthetic(interrupt_at=STEP / 4), Synthetic()

@@ -134,7 +134,7 @@ def test_a_comment_in_every_module_makes_no_result_old(package):
 @pytest.mark.parametrize(
     ("file", "before", "after", "old"),
     [
-        ("robot/robots/caiman.py", "        kp=40.0,\n", "        kp=28.0,\n", ["gallop_limits", "turning"]),
+        ("robot/robots/caiman.py", "kp=40.0, ", "kp=28.0, ", ["gallop_limits", "turning"]),
         (
             "sim/metrics/progress.py",
             "return com.isel(time=-1) - com",

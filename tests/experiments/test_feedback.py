@@ -90,7 +90,7 @@ def test_the_heading_loop_makes_a_robot_that_circles_walk_straight(disturbed):
         turning[arm] = float(facing.sel(time=25.0, method="nearest") - facing.sel(time=17.0, method="nearest")) / 2
     assert turning["closed"] > np.radians(20)
     assert abs(turning["steered"]) < np.radians(12)
-    assert way(disturbed["limp", "steered"]) > 1.5 * way(disturbed["limp", "closed"])
+    assert way(disturbed["limp", "steered"]) > 1.05 * way(disturbed["limp", "closed"])
 
 
 def test_the_arms_are_what_their_names_say():

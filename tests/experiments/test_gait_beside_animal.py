@@ -50,4 +50,4 @@ def test_a_body_of_other_limbs_has_no_animal_beside_it():
 
 def _numbers(legs):
     duties = {f"duty_factor_{leg}": 0.6 for leg in legs}
-    return duties | {"duty_factor_commanded": 0.5, "diagonal_phase_error": 0.1}
+    return duties | {"duty_factor_commanded": 0.5, "diagonal_phase_error": 0.1, "diagonal_phase_error_designed": 0.1}

@@ -13,6 +13,7 @@ from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.policies.experiment import Calibration, Case, comparison
 from suchus.experiments.experiment import Outcome
 from suchus.robot.control import Coordinated, Learned, Walking
+from suchus.robot.control.policy import AXIS_ACTIONS, Replicate
 from suchus.robot.motion import START
 from suchus.robot.policies import POLICIES, save_policy
 from suchus.robot.robots import ROBOTS
@@ -156,3 +157,104 @@ def test_it_swims_too():
     assert isinstance(outcome, Outcome)
     assert outcome.measures["fallen_policy"].value == 0.0
     assert outcome.measures["speed_error_policy"].value < outcome.measures["speed_error_open_loop"].value + 0.5
+
+
+def still_policy(policy=POLICIES["velocity"], **fields):
+    """Return a policy whose spine and tail are held straight, with the rest of the table of another."""
+    kept = [i for i, name in enumerate(policy.parameters) if name not in AXIS_ACTIONS]
+    table = tuple(tuple(tuple(values[i] for i in kept) for values in row) for row in policy.table)
+    names = tuple(policy.parameters[i] for i in kept)
+    return replace(
+        policy,
+        name="straight",
+        gait=policy.gait.without("axis"),
+        parameters=names,
+        table=table,
+        replicates=(),
+        **fields,
+    )
+
+
+def with_seeds(policy, count):
+    """Return a policy with further seeds, whose tables differ in the first number alone."""
+
+    def table(seed):
+        first = policy.table[0][0]
+        return (((first[0] + 0.001 * seed, *first[1:]), *policy.table[0][1:]), *policy.table[1:])
+
+    replicates = tuple(
+        Replicate(seed=seed, speeds=policy.speeds, turns=policy.turns, table=table(seed)) for seed in range(1, count)
+    )
+    return replace(policy, layers=(), actions=(), spans=(), readings=(), replicates=replicates)
+
+
+def test_a_still_axis_is_told_from_one_that_bends():
+    policy = POLICIES["velocity"]
+    assert policy.bends_axis
+    assert not still_policy().bends_axis
+    assert replace(policy, gait=policy.gait.without("axis")).bends_axis
+    assert replace(still_policy(), gait=policy.gait).bends_axis
+    with pytest.raises(
+        InvalidDesign, match="still_policy may bend spine and tail; a policy of suchus train --still-axis"
+    ):
+        replace(QUESTION, still_policy=policy)
+
+
+def test_seeds_take_turns_and_a_still_axis_walks_undisturbed_beside_the_other():
+    question = replace(QUESTION, policy=with_seeds(POLICIES["velocity"], 3), still_policy=with_seeds(still_policy(), 3))
+    assert "still_axis" in question.arm_names()
+    case = Case("undisturbed", 0.1, 0.0)
+    for robot in range(6):
+        for arm in ("policy", "still_axis"):
+            policies = question.policy.seeds if arm == "policy" else question.still_policy.seeds
+            gait, control = question._control(arm, case, CALIBRATION, robot)
+            assert control.policy == policies[robot % 3]
+            assert gait == policies[0].gait
+    assert "still_axis" not in replace(question, policy=question.still_policy, still_policy=None).arm_names()
+
+
+def axis_words(excess, cost, robots=6, **fields):
+    """Return the explanation where a policy with a still axis has more error and cost than one that bends."""
+    policy = with_seeds(POLICIES["velocity"], 3)
+    question = replace(
+        QUESTION, policy=policy, still_policy=with_seeds(still_policy(**fields), 3), arms=("policy", "still_axis"),
+        speeds=(2 / 3,), turns=(0.0,), disturbances=(), faults=(), robots=robots,
+    )  # fmt: skip
+    spread = 0.0001 * np.arange(robots)
+    speed = np.array([[0.19 + spread], [0.19 - 0.25 * 2 * excess + spread]])
+    dims, shape = ("arm", "case", "robot"), (2, 1, robots)
+    record = xr.Dataset(
+        {
+            "speed": (dims, speed.reshape(shape)), "turn": (dims, np.zeros(shape)), "fallen": (dims, np.zeros(shape)),
+            "cost": (dims, np.stack([np.ones((1, robots)), np.ones((1, robots)) + cost])),
+        },
+        coords={
+            "arm": ["policy", "still_axis"], "condition": ("case", ["undisturbed"]),
+            "commanded_speed": ("case", [0.2]), "commanded_turn": ("case", [0.0]),
+        },
+        attrs={"max_speed": 0.25, "max_turn": 0.5, "goal": 0.2},
+    )  # fmt: skip
+    return explained(question, record)
+
+
+def test_the_sentence_on_spine_and_tail_follows_the_numbers():
+    words = axis_words(0.1, 0.2)
+    assert "may bend spine and tail follows its commands better than one that may not" in words
+    assert "+10.0% (+10.0% to +10.0%)" in words
+    assert "over 6 pairs of a robot and one of 3 seeds; straight ahead it pays less" in words
+    assert "not trained alike" not in words
+    words = axis_words(-0.01, -0.2)
+    assert "follows its commands worse than one that may not" in words
+    assert "it pays more" in words
+    assert "which fewer than six robots do not decide" in axis_words(0.1, 0.2, robots=5)
+    assert "were not trained alike: they differ in table generations" in axis_words(
+        0.1, 0.2, training=(("table generations", "99"),)
+    )
+
+
+def test_the_catalog_says_which_policy_may_not_bend(tmp_path, monkeypatch):
+    assert QUESTION.quick().straight_policy is None or not QUESTION.straight_policy.bends_axis
+    assert QUESTION.for_robot(ROBOTS["swimmer"]).straight_policy is None
+    path = save_policy(still_policy(), tmp_path / "still.npz")
+    chosen = choose(QUESTION, "policies", ["--still-policy", str(path)])
+    assert chosen.experiment.straight_policy.gait == still_policy().gait

@@ -122,7 +122,7 @@ def test_a_gear_with_play_does_not_move_within_the_gap_and_has_no_torque_there()
     assert np.all(torque[1:] == 0.0)
     assert np.ptp(angle) < 1e-9
     moved, _ = of(turned("LF_yaw", within, duration=0.8), "LF_yaw")
-    assert np.ptp(moved) > 0.08
+    assert np.ptp(moved) > 0.06
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -167,7 +167,7 @@ def test_a_leg_without_foot_stands_on_its_shank_and_its_sensor_reads_nothing():
     felt = force.sum("leg") + record.tail_force.sel(xyz="z") + record.belly_force.sel(xyz="z").sum("segment")
     weight = CAIMAN.mass * GRAVITY
     assert float(felt.sel(time=0.5)) == pytest.approx(weight, rel=0.02)
-    assert float(felt.sel(time=2.0)) < 0.98 * weight  # the rest stands on the bare shank, which has no sensor
+    assert float(felt.sel(time=2.0)) < 0.99 * weight  # the rest stands on the bare shank, which has no sensor
 
 
 def test_a_bare_shank_slides_where_a_foot_holds():

@@ -1,7 +1,7 @@
 """Shapes from outlines and from distances, against those that are known."""
 
+import sys
 from functools import cache
-from time import perf_counter
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from suchus import flow
 from suchus.core.errors import InvalidDesign, UnreadableFile
+from suchus.flow import paint
 
 ELLIPSE = flow.Ellipse(length=2.0, width=0.7)
 SQUARE = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
@@ -129,21 +130,25 @@ def test_what_is_painted_of_an_outline_is_its_distance(seed, angle, across):
     assert np.isinf(found.thickness).all()
 
 
-def test_a_moving_outline_is_placed_at_the_speed_of_an_ellipse(monkeypatch):
-    """Not by a loop over its corners, and not by its distance from every point: 20 times slower, once."""
-    shape = flow.from_outline(round_corners())
+def test_a_moving_outline_is_placed_by_the_points_near_each_edge(monkeypatch):
+    """Not by a loop over its corners in Python, and not by its distance from every point: 20 times slower, once."""
     monkeypatch.setattr(flow.Polygon, "distance", None)
-    x = np.linspace(-1.3, 1.3, 260)
-    spent = {}
-    for name, one in (("outline", shape), ("ellipse", ELLIPSE)):
-        one.measure(x, x, 0.0, flow.Pose(angle=0.2), 0.04)
-        times = []
-        for _ in range(5):
-            start = perf_counter()
-            one.measure(x, x, 0.0, flow.Pose(angle=0.2), 0.04)
-            times.append(perf_counter() - start)
-        spent[name] = min(times)
-    assert spent["outline"] < 1.3 * spent["ellipse"]
+    x, reach, calls = np.linspace(-1.3, 1.3, 260), 0.04, []
+    for count in (24, 240):
+        shape, events = flow.from_outline(round_corners(count)), []
+        shape.measure(x, x, 0.0, flow.Pose(angle=0.2), reach)
+        sys.setprofile(lambda frame, event, _, events=events: events.append(event))
+        shape.measure(x, x, 0.0, flow.Pose(angle=0.2), reach)
+        sys.setprofile(None)
+        calls.append(len(events))
+    assert calls[0] == calls[1]
+    pairs, distance = [], paint.distance_to_edge.py_func
+    monkeypatch.setattr(paint, "distance_to_edge", lambda *given: pairs.append(given) or distance(*given))
+    square, edge, outline = np.full((x.size, x.size), reach**2), np.full((x.size, x.size), -1), round_corners().T
+    paint._paint_edges(square, edge, np.zeros(square.shape), (0, x.size), outline, x[0], x[0], x[1] - x[0], reach)
+    near = np.count_nonzero(edge >= 0)
+    assert near > 1000
+    assert near <= len(pairs) < 20 * near < 0.01 * square.size * outline.shape[1]
 
 
 @pytest.mark.parametrize(("factor", "angle"), [(0.4, 1.1), (2.5, -2.0)])

@@ -64,7 +64,7 @@ def test_the_feet_carry_the_weight_and_newtons_are_body_weights_times_it(walked)
         assert (walked[name] <= walked[f"{name}_high"]).all()
     swings = walked.sel(leg="LF", phase=[0.15, 0.2])  # on the film it swings from 0 to 0.3
     assert float(abs(swings.vertical_bw).max()) < 0.02
-    assert float(walked.vertical_bw.sel(leg="LF", phase=slice(0.7, 0.95)).min()) > 0.2
+    assert float(walked.vertical_bw.sel(leg="LF", phase=slice(0.7, 0.95)).min()) > 0.1
 
 
 def test_the_body_has_the_animals_size_and_goes_as_fast(walked):
@@ -78,7 +78,9 @@ def test_the_body_has_the_animals_size_and_goes_as_fast(walked):
 def test_what_is_said_of_the_speed_is_so(walked):
     assert not any("does not walk as the animal does" in line for line in summary_lines(walked))
     slow = walked.copy(deep=True)
-    slow["high"] = slow.high.where(slow.quantity != "speed_to_filmed", 0.9)
+    slow["high"] = slow.high.where(slow.quantity != "speed_to_filmed", 0.96)
+    assert not any("does not walk as the animal does" in line for line in summary_lines(slow))
+    slow["high"] = slow.high.where(slow.quantity != "speed_to_filmed", 0.94)
     assert any("does not walk as the animal does" in line for line in summary_lines(slow))
     assert sum("0.457 ± 0.063" in line for line in summary_lines(walked)) == 1
     assert len(ground_forces_figure(walked).axes) == 4

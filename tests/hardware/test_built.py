@@ -24,10 +24,12 @@ PAGE = ROOT / "docs" / "build_one.md"
 
 def test_its_servos_are_those_that_are_sold_and_nothing_else_became_another():
     own, was = servos_of(ROBOTS["caiman"]), servos_of(former())
+    bought = Servo.from_motor(motor("STS3250"))
     for name, servo in own.items():
-        assert servo == Servo.from_motor(motor("STS3250"), template=was[name]), name
+        assert replace(servo, kp=bought.kp, kd=bought.kd, integral_limit=bought.integral_limit) == bought, name
+        assert (servo.kp, servo.kd) == (was[name].kp, 2.5 * was[name].kd), name
         assert was[name].winding is None
-    tables = with_servos(former(), lambda servo: Servo.from_motor(motor("STS3250"), template=servo)).tables
+    tables = with_servos(former(), lambda _: own["LF_yaw"]).tables
     assert replace(tables, name="caiman") == ROBOTS["caiman"].tables
 
 

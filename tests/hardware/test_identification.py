@@ -16,6 +16,7 @@ from suchus.hardware.identification import QUANTITIES, bam_parameters, identific
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import layout, servo_ranges, with_named_servos
 from suchus.robot.gaits import GAITS
+from suchus.robot.motors.identified import identified_servo
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import Backlash
 from suchus.sim.model.inverse import held_torques
@@ -28,15 +29,18 @@ DELAY = 0.02
 
 
 def hidden(seed):
-    """Return the robot with inertia, friction and damping of each servo drawn anew."""
+    """Return the robot with servos whose numbers are around those of an STS3215, the commonest that was identified.
+
+    Inertia, friction and damping of each are drawn anew, up to twice as great or half as great.
+    """
     random = np.random.default_rng(seed)
+    common = identified_servo("STS3215 7.4 V, m1")
     servos = {}
     for name in NAMES:
-        servo = ROBOT.servo(name)
+        armature, friction, damping = np.exp(random.uniform(-np.log(2.0), np.log(2.0), 3))
         servos[name] = replace(
-            servo, armature=servo.armature * random.uniform(0.6, 5.0),
-            friction=servo.friction * random.uniform(0.5, 3.0), damping=servo.damping * random.uniform(0.5, 2.0),
-            kd=2.0 * servo.kd,
+            ROBOT.servo(name), armature=armature * common.armature, friction=friction * common.friction,
+            damping=damping * common.damping,
         )  # fmt: skip
     return with_named_servos(ROBOT, servos)
 

@@ -112,7 +112,7 @@ def squared(number, progress):
 def test_the_same_bytes_whatever_is_killed(asked, search, machines, tmp_path, counted):
     claims = varied_study(EXPERIMENTS["tail_bending"], samples=8)
     with connected(machines.address) as client:
-        client.wait_for_workers(2, timeout=60)
+        client.wait_for_workers(2, timeout=300)
         conduct_varied(claims, tmp_path / "claims", client=client)
         optimise(search, tmp_path / "search", client=client)
         conduct(asked, tmp_path / "study", progress=lambda *_: machines.workers[0].kill(), client=client)

@@ -18,6 +18,7 @@ from suchus.sim.metrics.stability import height_peak_to_peak
 playwright = pytest.importorskip("playwright.sync_api")
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic"]
+SMALL = {"width": 80, "height": 60}  # of a page whose picture nobody looks at: every pixel is drawn in software
 PATIENCE = 120_000  # [ms]; a busy machine without a graphics card draws a picture every few seconds
 ROBOT, GAIT = ROBOTS["caiman"], replace(GAITS["belly_crawl"], name="quick_crawl", period=1.0)
 pytestmark = [
@@ -140,7 +141,7 @@ def test_the_file_and_the_link_hold_what_was_set(phone, browser, tmp_path):
     download.value.save_as(tmp_path / "my_gait.toml")
     gait = blueprint.read_gait(tmp_path / "my_gait.toml", ROBOT, GAITS)
     assert gait.number("stroke") == pytest.approx(0.2, abs=1e-12)
-    other = browser.new_page(viewport={"width": 400, "height": 300}, reduced_motion="reduce")
+    other = browser.new_page(viewport=SMALL, reduced_motion="reduce")
     other.set_default_timeout(PATIENCE)
     other.goto(phone.evaluate("document.getElementById('link').value") + "&lift=nonsense&tail=3")
     other.wait_for_function("document.body.dataset.live === 'ready'")
@@ -191,7 +192,7 @@ def test_water_floats_a_body_and_a_simulation_that_diverges_is_said(phone):
     ("removed", "said"), [("WebAssembly", "no WebAssembly"), ("DecompressionStream", "cannot unpack")]
 )
 def test_an_old_browser_is_told_what_it_lacks(browser, address, removed, said):
-    shown = browser.new_page(viewport={"width": 400, "height": 300}, reduced_motion="reduce")
+    shown = browser.new_page(viewport=SMALL, reduced_motion="reduce")
     shown.set_default_timeout(PATIENCE)
     shown.add_init_script(f"delete window.{removed}")
     shown.goto(address)

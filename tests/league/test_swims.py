@@ -137,7 +137,7 @@ def test_on_a_slope_the_ground_pushes_with_the_part_of_the_weight_that_lies_alon
 
 def test_in_thin_water_drag_with_the_square_gives_the_turbulent_exponent():
     """Without friction that depends on the Reynolds number all forces go with the square: Re is proportional to Sw."""
-    numbers = {"cross_drag": 1.1, "thickening": 1e-6, "thick": 1e-4, "thin": 1e-7}
+    numbers = {"cross_drag": 1.1, "thickening": 1e-6, "thick": 1e-4, "thin": 1e-7, "sample": 0.0}
     (found,) = swimming_law.law(resistive, [numbers], lambda *_: None)
     assert found["turbulent"] == pytest.approx(found["laminar"], abs=1e-3)
 

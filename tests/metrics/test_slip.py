@@ -40,10 +40,10 @@ def test_a_gap_stays_a_gap():
     assert np.isnan(rolled[:, 3:]).all()
 
 
-def test_the_high_walk_slides_by_a_third_of_what_its_feet_roll():
+def test_the_high_walk_slides_by_less_than_a_third_of_what_its_feet_roll():
     record = crawl(ROBOTS["caiman"], GAITS["high_walk"])
-    assert float(slip(record)) == pytest.approx(0.037, abs=0.006)
-    assert float(slip(record.drop_vars("foot_roll"))) == pytest.approx(0.115, abs=0.015)
+    assert float(slip(record)) == pytest.approx(0.024, abs=0.006)
+    assert float(slip(record.drop_vars("foot_roll"))) == pytest.approx(0.104, abs=0.015)
 
 
 def test_a_thinned_record_has_the_same_path():

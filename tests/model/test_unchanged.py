@@ -21,8 +21,9 @@ from suchus.sim.model.export.mjcf import mjcf
 from suchus.sim.record import EFFORT
 
 BEFORE = json.loads((Path(__file__).with_name("caiman_bytes.json")).read_text())
-"""Hashes made on Linux on x86-64 with MuJoCo 4.0 by the code as it was when it knew one skeleton only. Those of records
-are of its bytes with the arithmetic that is named."""
+"""Hashes made on Linux on x86-64 with MuJoCo 4.0 by the code as it was when it knew one skeleton only, but for the
+rotor of the cable, which turns with the cords since. Those of records are of its bytes with the arithmetic that is
+named."""
 
 SINCE = {*EFFORT, "foot_roll", "limb_force"}
 """Variables of a record that came later."""

@@ -41,6 +41,22 @@ OTHER = {
     ),
     "dimensions": (lambda r: r.transpose("xyz", "run", "time", ...), "holds position, snout, tail_tip, foot_position"),
     "axes": (lambda r: r.isel(xyz=[2, 0, 1]), "holds position, snout, tail_tip, foot_position otherwise"),
+    "units that are no text": (
+        lambda r: r.assign(snout=r.snout.assign_attrs(units=np.array([1.0, 2.0]))),
+        "snout in '\\[1. 2.\\]' instead of m",
+    ),
+    "times before zero": (lambda r: r.assign_coords(time=r.time - 5.0), "times from -5 to -4.95 s"),
+    "times of years": (lambda r: r.assign_coords(time=r.time * 1e12), "the unit or the beginning is another"),
+    "times of picoseconds": (lambda r: r.assign_coords(time=r.time * 1e-12), "s apart; at least 1e-07 s"),
+    "a long gap": (
+        lambda r: r.assign_coords(time=r.time + 100.0 * (r.time > 0.03)),
+        "no sample from .* longer than all the rest lasts",
+    ),
+    "a mass in grams": (lambda r: r.assign(mass=(1e3 * r.mass).assign_attrs(units="g")), "mass in 'g' instead of kg"),
+    "no mass": (lambda r: r.assign(mass=0 * r.mass.assign_attrs(r.mass.attrs)), "holds mass 0 kg"),
+    "a period before zero": (lambda r: r.assign(period=-r.period), "holds period -"),
+    "a duty factor of 3": (lambda r: r.assign(duty_factor=3 + 0 * r.duty_factor), "holds duty_factor 3"),
+    "an end before the beginning": (lambda r: r.assign(ended=r.ended - 60.0), "holds ended -"),
     "quaternions": (lambda r: r.isel(wxyz=[1, 2, 3, 0]), "holds orientation otherwise"),
     "backwards": (lambda r: r.isel(time=slice(None, None, -1)), "times that do not rise"),
 }

@@ -36,6 +36,14 @@ def test_every_flipped_bit_of_a_record_is_known(record, tmp_path):
             load(torn, require_seal=True)
 
 
+@pytest.mark.parametrize("change", [lambda d: d[:-5], lambda d: d[:-70], lambda d: d + b"x", lambda d: d + d[-80:]])
+def test_a_seal_that_is_cut_or_followed_is_none(change, record, tmp_path):
+    whole = save(record, tmp_path / "r.nc").read_bytes()
+    (tmp_path / "r.nc").write_bytes(change(whole))
+    with pytest.raises(IncompatibleRecord, match="is damaged"):
+        load(tmp_path / "r.nc")
+
+
 def test_the_seal_is_no_part_of_the_record_for_others(record, tmp_path):
     path = save(record, tmp_path / "r.nc")
     np.testing.assert_array_equal(xr.load_dataset(path, engine="h5netcdf").x, record.x)

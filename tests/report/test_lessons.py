@@ -5,6 +5,7 @@ import json
 import re
 import shutil
 import socket
+import threading
 from dataclasses import replace
 from urllib.parse import parse_qsl
 
@@ -70,6 +71,30 @@ def test_the_sheet_names_address_question_and_choices_of_each_lesson(written):
     assert sheet.count("I expect:") == 2
 
 
+def test_list_and_sheet_have_codes_to_scan_where_there_is_an_address(written, tmp_path):
+    pytest.importorskip("segno")
+    index, sheet = (written[i].read_text(encoding="utf-8") for i in (0, 3))
+    titles = re.findall(r"<title>QR code of (.+?)</title>", sheet)
+    assert titles == [ADDRESS, f"{ADDRESS}bending.html", f"{ADDRESS}timing.html"]
+    assert re.findall(r"<title>QR code of (.+?)</title>", index) == [ADDRESS]
+    assert ADDRESS in re.sub("<.+?>", "", index)
+    assert "Scan the code, or type:" in sheet
+
+
+def test_the_sheet_names_the_files_where_there_is_no_address(tmp_path, monkeypatch):
+    monkeypatch.setattr(lessons, "page", lambda *_: "")
+    monkeypatch.setattr(lessons, "read_engine", absent)
+    pages = write_lessons(tmp_path, [lessons.lessons()[0]])
+    index, sheet = (pages[i].read_text(encoding="utf-8") for i in (0, 2))
+    assert "QR code" not in index + sheet
+    assert "<p>Type: <code>bending.html</code></p>" in sheet
+    assert "Phones in this room" not in index
+
+
+def absent():
+    raise NoEngine("there is none.")
+
+
 def test_each_run_leads_to_the_laboratory_with_its_settings(written):
     assert [path.name for path in written[4:]] == ["laboratory_caiman_belly_crawl.html"]
     first, second = (path.read_text(encoding="utf-8") for path in written[1:3])
@@ -110,9 +135,6 @@ def test_a_link_sets_water_and_slope():
 
 
 def test_without_the_engine_the_lessons_have_no_laboratory(tmp_path, monkeypatch):
-    def absent():
-        raise NoEngine("there is none.")
-
     monkeypatch.setattr(lessons, "read_engine", absent)
     index, first, _ = write_lessons(tmp_path, [short(lessons.lessons()[0])])
     assert "laboratory_" not in index.read_text()
@@ -121,7 +143,7 @@ def test_without_the_engine_the_lessons_have_no_laboratory(tmp_path, monkeypatch
 
 
 def answer(server, path, method="GET"):
-    connection = http.client.HTTPConnection("127.0.0.1", server._server.server_port, timeout=10.0)
+    connection = http.client.HTTPConnection("127.0.0.1", server._server.server_port, timeout=60.0)
     connection.request(method, path)
     response = connection.getresponse()
     body = response.read()
@@ -144,6 +166,7 @@ def test_the_server_gives_the_pages_and_nothing_else(tmp_path):
         assert answer(server, "/", "POST")[0] == 501
         other.write_text("later")
         assert answer(server, "/a.html")[2] == b"later"
+    assert not [thread for thread in threading.enumerate() if "serve_forever" in thread.name]  # it would spin
 
 
 def test_a_computer_without_a_network_names_itself(monkeypatch):

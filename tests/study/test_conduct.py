@@ -99,14 +99,18 @@ def test_progress_counts_up_to_all_runs(asked, tmp_path):
 def test_a_killed_study_loses_at_most_the_running_batch_and_ends_with_the_same_bytes(tmp_path, counted):
     page = tmp_path / "strokes.toml"
     page.write_text(PAGE)
-    store = tmp_path / "killed"
-    command = [sys.executable, "-m", "suchus", "study", str(page), "--out", str(store)]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
-        while len(list((store / "parts").glob("*.nc"))) < 2 and process.poll() is None:
-            time.sleep(0.002)
-        os.kill(process.pid, signal.SIGKILL)
+    kept = {}
+    for attempt in range(20):
+        store = tmp_path / f"killed {attempt}"
+        command = [sys.executable, "-m", "suchus", "study", str(page), "--out", str(store)]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            while len(list((store / "parts").glob("*.nc"))) < 2 and process.poll() is None:
+                time.sleep(0.002)
+            os.kill(process.pid, signal.SIGKILL)
+        kept = {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in (store / "parts").glob("*.nc")}
+        if len(kept) < 8:
+            break  # else this process waited for a busy machine until the study was finished
     counted()
-    kept = {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in (store / "parts").glob("*.nc")}
     assert 2 <= len(kept) < 8
     assert not (store / RESULTS).exists()
     asked = read_study(page)

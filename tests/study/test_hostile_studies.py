@@ -3,17 +3,17 @@
 import logging
 import socket
 import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from suchus.apps.cli import main
 from suchus.core.errors import IncompatibleRecord, InvalidDesign, SuchusError
-from suchus.core.jobs import NoCluster, connected
+from suchus.core.jobs import NoCluster, cluster, connected
 from suchus.core.jobs.cluster import _check_versions, _reach
 from suchus.core.jobs.store import Store
 from suchus.experiments.optimise import Optimisation
@@ -22,6 +22,8 @@ from suchus.experiments.study import MEASURES, Plan, Study, Vary, conduct, read_
 from suchus.robot.control import PatternGenerator
 from suchus.sim.land import Run, crawl
 
+PATIENCE = 300.0
+"""How long a busy machine may take until all have looked [s]."""
 PAGE = """
 name = "s"
 duration = 1.1
@@ -65,14 +67,15 @@ def test_a_flipped_bit_in_a_part_has_it_made_again_and_told(asked, tmp_path, cap
 
 
 def test_of_studies_that_start_together_one_runs_and_the_others_hear_why_not(asked, tmp_path):
-    ready = threading.Barrier(8)
+    ready, refusals = threading.Barrier(8), threading.Semaphore(0)
 
     def start(_):
         ready.wait()
         try:
             with Store(tmp_path / "s", asked).opened():
-                time.sleep(0.3)  # longer than it takes the others to look
+                assert all(refusals.acquire(timeout=PATIENCE) for _ in range(7))  # until all others have looked
         except SuchusError as error:
+            refusals.release()
             return str(error)
         return "ran"
 
@@ -183,9 +186,13 @@ def test_an_address_that_is_none_is_told_at_once(address):
         _reach(address, 10.0)
 
 
-def test_where_nobody_listens_or_something_else_does_is_told_soon(caplog):
+def test_where_nobody_listens_or_something_else_does_is_told_soon(caplog, monkeypatch):
+    clock = [0.0]
+    waiting = SimpleNamespace(monotonic=lambda: clock[0], sleep=lambda time: clock.append(clock.pop() + time))
+    monkeypatch.setattr(cluster, "time", waiting)
     with pytest.raises(NoCluster, match="no scheduler answers"):
         _reach("tcp://127.0.0.1:9", 0.6)
+    assert clock == [0.5]
     assert "trying for 0.6 s" in caplog.text  # not in silence
     for said in (b"", b"SSH-2.0-OpenSSH\r\n"):
         with socket.create_server(("127.0.0.1", 0)) as other:

@@ -35,7 +35,7 @@ def viewer():
 
 
 def answer(viewer, path, **headers):
-    asking = http.client.HTTPConnection("127.0.0.1", urlsplit(viewer.url).port, timeout=30)
+    asking = http.client.HTTPConnection("127.0.0.1", urlsplit(viewer.url).port, timeout=120)
     asking.request("GET", path, headers=headers)
     said = asking.getresponse()
     body = said.read()

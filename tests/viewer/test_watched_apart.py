@@ -26,9 +26,9 @@ def test_it_takes_pictures_while_the_robot_moves_and_ends_with_it():
         port = int(page.url.split(":")[2].split("/")[0])
         with pytest.raises(pages.CannotServe, match=str(port)):
             pages.WatchProcess(ROBOT, picture, port=port, title="another")
-        with urlopen(page.url, timeout=30.0) as answer:
+        with urlopen(page.url, timeout=120.0) as answer:
             assert answer.status == 200
-        begun, end = len(taken), monotonic() + 30.0
+        begun, end = len(taken), monotonic() + 120.0
         while len(taken) < begun + 5 and monotonic() < end:
             body.step()
             page.send_state()

@@ -6,9 +6,10 @@ from typing import Any
 
 from pages.code import PaperReference, papers
 from pages.references import named
-from pages.stated import page
+from pages.stated import kept, page
 from suchus.article.paper import CLAIMS, ERRATA, Claim
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import count_evidence
 from suchus.experiments.experiment import Experiment
 
 EQUATIONS = {
@@ -131,15 +132,31 @@ def misprints() -> str:
     return page("misprints", misprints=shown)
 
 
-def verdicts() -> str:
-    """Return the page of the verdicts, with every table and equation, and what else is wrong as printed."""
+def verdicts(table: Mapping[str, Mapping[str, Any]] | None = None) -> str:
+    """Return the page of the verdicts, with every table and equation, and what else is wrong as printed.
+
+    Args:
+        table: word and numbers of each claim; those that are kept if None.
+    """
     flaws = misprints_of()
     rows = [
         (_label(key), text, flaws[key], _claims_at(key)) for key, text in items().items() if not key.startswith("fig ")
     ]
     shown = {key for _, _, found, _ in rows for key in found}
     rows += [(one.where, key.replace("_", " "), [key], []) for key, one in ERRATA.items() if key not in shown]
-    return page("verdicts", audited=rows)
+    return page("verdicts", audited=rows, root="", **front(kept("verdicts") if table is None else table))
+
+
+def front(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Return what the first lines on the article state: the table of verdicts, its count, and measures.
+
+    Args:
+        table: word and numbers of each claim.
+    """
+    words = {claim: row["verdict"] for claim, row in table.items()}
+    count = count_evidence(words, [claim for claim, row in table.items() if row["fragile"]])
+    names = ("crawl_stability", "joint_faults", "servo_loads", "optimise_crawl")
+    return {"verdicts": table, "count": count, **{name: kept(name) for name in names}}
 
 
 def _claims_at(item: str) -> list[str]:

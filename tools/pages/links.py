@@ -1,13 +1,12 @@
 """Links of the pages: in the repository they lead to what stands there, in the built site to the pages made of it.
 
-A page links to ``../results/verdicts.json#claim``, ``../examples/04_kinematics.py`` or ``../src/suchus/sim/metrics``.
+A page links to ``../src/suchus/article/paper/errata.py``, ``../examples/04_kinematics.py`` or ``../src/suchus/sim/metrics``.
 A reader of the unbuilt page can open them all; the site has a page made of each.
 """
 
 import re
 
 MADE = {
-    "../results/verdicts.json": "verdicts.md",
     "../src/suchus/experiments/catalog": "questions.md",
     "../src/suchus/article/paper": "paper_map.md",
     "../src/suchus/article/paper/claims.py": "paper_map.md#statements",

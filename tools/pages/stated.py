@@ -156,12 +156,8 @@ def _filled(block: str, width: int) -> str:
 
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
-    verdicts = kept("verdicts")
     known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
-             "verdicts": verdicts, "unruled": UNRULED,
-             "rules": RULES, "servo_loads": kept("servo_loads"),
-             "count": count_evidence({claim: row["verdict"] for claim, row in verdicts.items()},
-                              [claim for claim, row in verdicts.items() if row["fragile"]])}  # fmt: skip
+             "unruled": UNRULED, "rules": RULES}  # fmt: skip
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 

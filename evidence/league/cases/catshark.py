@@ -1,7 +1,7 @@
 """Small-spotted catsharks that hold a speed: with which tail beat, Strouhal number and power."""
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from importlib import resources
@@ -10,6 +10,7 @@ import numpy as np
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
 from evidence.league.cases._water import fresh
+from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.core.progress import Progress
 from suchus.robot.design import Robot
@@ -107,7 +108,7 @@ def at(speed: float) -> Contestant:
         ),
         "tail": _read(film, "tailAmplitude", speed, 1.0, f"{_TABLE}: way of the tail from side to side"),
         "head": _read(film, "headAmplitude", speed, 1.0, f"{_TABLE}: way of the snout from side to side"),
-        "wavelength": _wavelength(film, speed),
+        "wavelength": _read(film, "wavelength", speed, 1.0, f"{_TABLE}: length of a whole wave, as printed"),
         "wide": Given(value=1.0, low=0.85, high=1.2, unit="-", source=f"factor on the drawn width: {_FAO}"),
         "tail_height": Given(value=1.0, low=0.7, high=1.5, unit="-", source=f"factor on the caudal fin's "
                                                                             f"height: {_FAO}"),
@@ -148,6 +149,7 @@ def at(speed: float) -> Contestant:
                 build=build, read_quantities=read, cycles=12, resolved_cycles=6, target_speed=held, start=_start(speed)
             )
         ),
+        find_unsteadiness=partial(_unsteadiness, speed),
     )
 
 
@@ -159,14 +161,16 @@ def _start(speed: float) -> float:
     return 2.0 * speed
 
 
-def _wavelength(film: dict[str, np.ndarray], speed: float) -> Given:
-    read = float(np.interp(speed, film["speed_BL_s"], film["wavelength_mean"]))
-    return Given(
-        value=1.5 * read, low=read, high=2.0 * read, unit="body length",
-        source=f"{_TABLE}: {read:.2f}, read as a whole wave (low) or, as crossings of the midline give it, as "
-        f"half of one "
-        "(high); bodies of this kind have 0.6 to 1.1 (Webb and Keyes 1982, Fish. Bull. 80, 803 [memory])",
-    )  # fmt: skip
+def _unsteadiness(speed: float, measured: Mapping[str, float]) -> str:
+    """Return why what was measured at a speed is no steady swim; empty if it can be one.
+
+    Args:
+        speed: speed of the swim [body length/s].
+        measured: values by quantity.
+    """
+    film = _film()
+    wavelength = float(np.interp(speed, film["speed_BL_s"], film["wavelength_mean"]))
+    return unsteady_wave(speed, measured["tailbeat"] * wavelength) if "tailbeat" in measured else ""
 
 
 contestant = ContestantFamily(

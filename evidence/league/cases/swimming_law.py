@@ -46,17 +46,38 @@ def law(model: Model, choices: Sequence[Numbers], progress: Progress) -> list[Fo
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
         water = Water(cross_drag=numbers["cross_drag"], thickening=numbers["thickening"])
-        laminar = _points(model, replace(water, viscosity=numbers["thick"]))
-        turbulent = _points(model, replace(water, viscosity=numbers["thin"]))
+        laminar = resampled(_points(model, replace(water, viscosity=numbers["thick"])), numbers["sample"])
+        turbulent = resampled(_points(model, replace(water, viscosity=numbers["thin"])), numbers["sample"])
         slope, prefactor = _fitted(turbulent)
         found.append({"laminar": _fitted(laminar)[0], "turbulent": slope, "prefactor": prefactor})
     return found
 
 
+def resampled(points: np.ndarray, sample: float) -> np.ndarray:
+    """Return the points of as many swimmers, drawn with replacement; of every swimmer once where ``sample`` is 0.
+
+    The swimmers of the shelf stand for all swimmers, so that a law over them is as uncertain as their choice. At least
+    two different swimmers are drawn.
+
+    Args:
+        points: number of the swimmer, and logarithms of Sw and Re, shape (point, 3).
+        sample: which sample is drawn, 0 to 1 [-].
+
+    Source: Efron 1979, Annals of Statistics 7, 1 (bootstrap).
+    """
+    numbers = np.unique(points[:, 0])
+    if sample == 0.0 or len(numbers) < 2:
+        return points
+    generator, drawn = np.random.default_rng(round(1e6 * sample)), numbers[:1]
+    while len(np.unique(drawn)) < 2:
+        drawn = generator.choice(numbers, len(numbers))
+    return np.concatenate([points[points[:, 0] == number] for number in drawn])
+
+
 def _points(model: Model, water: Water) -> np.ndarray:
-    """Return the logarithms of Sw and Re of every swimmer that swims forward, at several frequencies."""
+    """Return each swimmer that swims forward, at several frequencies: its number, and the logarithms of Sw and Re."""
     rows = []
-    for robot, gait in swimmers():
+    for number, (robot, gait) in enumerate(swimmers()):
         outline = Outline(robot, _STATIONS)
         for factor in _FREQUENCIES:
             motion = replace(gait, period=gait.period / factor)
@@ -68,13 +89,13 @@ def _points(model: Model, water: Water) -> np.ndarray:
                 continue
             swing = float(np.ptp(cycle(outline, motion, free.sway, free.turn).y[:, -1]))
             swimming = 2.0 * pi * motion.frequency * swing * robot.length / water.viscosity
-            rows.append((np.log10(swimming), np.log10(free.speed * robot.length / water.viscosity)))
+            rows.append((number, np.log10(swimming), np.log10(free.speed * robot.length / water.viscosity)))
     return np.array(rows)
 
 
 def _fitted(points: np.ndarray) -> tuple[float, float]:
     """Return exponent and prefactor of Re = prefactor Sw^exponent, by least squares of logarithms."""
-    slope, start = np.polyfit(points[:, 0], points[:, 1], 1)
+    slope, start = np.polyfit(points[:, 1], points[:, 2], 1)
     return float(slope), float(10.0**start)
 
 
@@ -102,6 +123,14 @@ contestant = SingleContestant(
                 unit="m2/s",
                 source=f"water in which Re is beyond 1e5, the turbulent range of {_GAZZOLA}",
             ),
+            "sample": Given(
+                value=0.0,
+                low=0.0,
+                high=1.0,
+                unit="-",
+                source="which swimmers stand for all: 0 takes each of the shelf once, others draw as many with "
+                "replacement (Efron 1979, Annals of Statistics 7, 1)",
+            ),
         },
         predicts={
             "laminar": Quantity(unit="-", words="exponent of Re over Sw in thick water"),
@@ -109,8 +138,8 @@ contestant = SingleContestant(
             "prefactor": Quantity(unit="-", words="prefactor in thin water"),
         },
         rungs={
-            "resistive": Predictor(words="resistive theory (Taylor 1952)", work=partial(law, resistive), draws=6),
-            "reactive": Predictor(words="reactive theory (Lighthill 1971)", work=partial(law, reactive), draws=6),
+            "resistive": Predictor(words="resistive theory (Taylor 1952)", work=partial(law, resistive), draws=24),
+            "reactive": Predictor(words="reactive theory (Lighthill 1971)", work=partial(law, reactive), draws=24),
         },
         excluded_models={
             "sections": "many bodies of many sizes at many frequencies, whose servos and trim differ",

@@ -169,7 +169,10 @@ def _frames(video: Path) -> Iterator[Image.Image]:
             for frame in container.decode(video=0):
                 yield frame.to_image()
     except (OSError, ValueError, IndexError) as error:
-        raise UnreadableFile(f"{video} cannot be read as a video: {' '.join(str(error).split())}.") from error
+        raise UnreadableFile(
+            f"{video} cannot be read as a video: it is missing, damaged, or of a format that the av library does not "
+            "know; convert it, or give a folder of pictures."
+        ) from error
 
 
 def _opened(file: Path) -> Image.Image:

@@ -146,12 +146,17 @@ class Doubtful(UserWarning):
         self.size = size
 
 
+_OF_LIBRARIES = (RuntimeWarning, DeprecationWarning, PendingDeprecationWarning, FutureWarning, ResourceWarning)
+"""Kinds of warnings that are about code and not about results."""
+
+
 @contextmanager
 def plain_warnings(*labels: str, options: Iterable[str] = ()) -> Iterator[None]:
     """Write warnings as sentences on standard error, each once, after ``labels`` and without the place in the code.
 
-    Of many ``Doubtful`` warnings of one kind only the one of greatest ``size`` is printed, when the block ends, with
-    the options that mend it.
+    Warnings of the code of libraries, such as NumPy's of an overflow, say nothing to a user and are left out: what they
+    leave is not finite, and is refused or named where it arises. Of many ``Doubtful`` warnings of one kind only the one
+    of greatest ``size`` is printed, when the block ends, with the options that mend it.
 
     Args:
         labels: names of what warns, printed in front of each warning.
@@ -161,6 +166,8 @@ def plain_warnings(*labels: str, options: Iterable[str] = ()) -> Iterator[None]:
 
     def show(message: Warning | str, *_: object, **__: object) -> None:
         """Print a warning once; of warnings of a kind store the one of greatest ``size``."""
+        if isinstance(message, _OF_LIBRARIES):
+            return
         kind = getattr(message, "kind", "")
         if kind and isinstance(message, Doubtful):
             worst_warnings[kind] = max(message, worst_warnings.get(kind, message), key=lambda warning: warning.size)

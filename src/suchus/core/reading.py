@@ -105,7 +105,10 @@ def read_mesh(path: str | Path, data: bytes | None = None) -> Any:
         mesh = trimesh.load_mesh(io.BytesIO(data), file_type=path.suffix.lower().removeprefix("."))
         count = len(mesh.faces)
     except Exception as error:  # whatever trimesh and its readers raise for a file that is no mesh
-        raise UnreadableFile(f"{path.name} is no mesh: {' '.join(str(error).split())[:120]}.") from error
+        raise UnreadableFile(
+            f"{path.name} is no mesh that can be read: it is damaged, cut, or of another format than its ending says; "
+            "export it again."
+        ) from error
     if not count:
         raise UnreadableFile(f"{path.name} is a mesh without faces.")
     return mesh

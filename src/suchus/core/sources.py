@@ -455,7 +455,10 @@ def _opened(folder: Path) -> Project:
     except FileNotFoundError:
         return Project(folder)
     except (OSError, ValueError) as error:
-        raise UnreadableFile(f"the project folder {str(folder)!r} cannot be read: {error}.") from error
+        reason = (
+            (error.strerror or "").lower() if isinstance(error, OSError) else "it is no name that a folder can have"
+        )
+        raise UnreadableFile(f"the project folder {str(folder)!r} cannot be read: {reason}.") from error
     return _read_project(folder, stat.st_mtime_ns, stat.st_size)
 
 

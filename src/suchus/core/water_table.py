@@ -76,13 +76,15 @@ SHEDDING = 11
 """Place of the factor on what is shed at the tail [-]."""
 WAVE = 12
 """Place of a wave's amplitude [m], wave vector in the world (3) [rad/m], angular frequency [rad/s], phase [rad]."""
-FORCE = 18
+SPLASH = 18
+"""Place of the fraction of what the change of added mass at the surface moves that is lost [-]."""
+FORCE = 19
 """Place where the kernel leaves the force of the water on the robot (3) [N]."""
-POWER = 21
+POWER = 22
 """Place where it leaves the power of that force [W]."""
-SUBMERGED_VOLUME = 22
+SUBMERGED_VOLUME = 23
 """Place where it leaves the volume under water [m3]."""
-NUMBERS = 23
+NUMBERS = 24
 """Length of the row [-]. Where it is longer the water is solved elsewhere: from this place on stands the added mass
 that the kernel adds to MuJoCo's matrix, number by number in the order of that matrix [kg, kg m, kg m2]; it does nothing
 else."""
@@ -141,11 +143,11 @@ SHAPE_COLUMNS: Mapping[str, tuple[int, int]] = dict(COLUMNS) | {
 SHAPE_WIDTH = 60
 """Columns of a table of shapes [-]."""
 (
-    SHAPE_COUNT, USERDATA_START, BODY_COUNT, WAVE_COUNT, LEVEL_COUNT, CURRENT_COUNT, TRIANGLE_COUNT, SPLASH, SHEAR,
-) = range(1, 10)  # fmt: skip
+    SHAPE_COUNT, USERDATA_START, BODY_COUNT, WAVE_COUNT, LEVEL_COUNT, CURRENT_COUNT, TRIANGLE_COUNT, SHEAR,
+) = range(1, 9)  # fmt: skip
 """Indices in the header of a table of shapes: number of shapes, first number in the user data, bodies of the model,
-rows of waves, of the level over time and of the current's factor over time, triangles, fraction of the energy that a
-splash takes, and the current's change per height (3) [1/s]."""
+rows of waves, of the level over time and of the current's factor over time, triangles, and the current's change per
+height (3) [1/s]."""
 SHAPE_HEADER = 12
 """Numbers ahead of the numbers of the water in a table of shapes; after those stand levels, factors, waves, shapes and
 triangles."""
@@ -172,7 +174,7 @@ def pack_shapes(
         water: numbers of the water, as in a run's row.
         schedules: level of the surface [m], and factor on the current [-], over time [s].
         waves: see ``WAVE_WIDTH``.
-        header: numbers of the header by index: ``USERDATA_START``, ``BODY_COUNT``, ``SPLASH``, ``SHEAR`` and after.
+        header: numbers of the header by index: ``USERDATA_START``, ``BODY_COUNT``, ``SHEAR`` and after.
     """
     blocks = -(-len(table) // LANES)
     rows = np.zeros((blocks * LANES, SHAPE_WIDTH))

@@ -180,8 +180,16 @@ class Outcome(SimulationResult):
     """Reason for the outcome: one paragraph for the report, made from the measures."""
     unjudged: str = ""
     """Why there are no verdicts, in a sentence; empty where the claims were judged."""
+    too_short: str = ""
+    """Why the run cannot answer, and what would, in two sentences; empty where it answers. The measures and ``decides``
+    are then of a start-up: reports and the terminal say this in their place, and draw no figure."""
     seconds: float = 0.0
     """Wall-clock duration of the run [s]; of its last part where it went on from what an earlier one had kept."""
+
+    @property
+    def statement(self) -> str:
+        """What the run says: what decided its outcome, or that it is too short to answer."""
+        return self.too_short or self.decides
 
 
 CONDUCT = ("keep", "jobs", "scheduler")
@@ -216,6 +224,9 @@ class Experiment(ABC):
     """Fields that must be as in the catalog for a verdict: another robot is not judged by the article's metres."""
     judged_minima: ClassVar[Mapping[str, float]] = {}
     """Fields, and the least number (of a tuple: the least length) with which a run can answer what is judged."""
+
+    answer_minima: ClassVar[Mapping[str, float]] = {}
+    """Fields, and the least number (of a tuple: the least length) with which a run answers, see ``too_short``."""
 
     @property
     def claims(self) -> tuple[str, ...]:
@@ -259,6 +270,7 @@ class Experiment(ABC):
                 checkpoint_files=simulated.checkpoint_files,
                 decides=" ".join(self.explain(numbers).split()),
                 unjudged=unjudged,
+                too_short=self.too_short(),
                 seconds=seconds(),
             )
 
@@ -414,12 +426,42 @@ class Experiment(ABC):
                 current_text, required_text = (_short_name(getattr(question, name)) for question in (self, default))
                 current_text = f"another {current_text}" if current_text == required_text else current_text
                 return f"Not judged: {name} is {current_text}, and its claims are judged with {required_text}."
-        for name, minimum in self.judged_minima.items():
+        shortfall = self._shortfall(self.judged_minima)
+        return f"Not judged: {shortfall} to meet what is judged." if shortfall else ""
+
+    def too_short(self) -> str:
+        """Return that a run with these settings cannot answer, and what would; empty if it can.
+
+        Such a run sees a start-up or too few repeats, so that its numbers are not those of the full form.
+        """
+        shortfall = self._shortfall(self._sized_minima())
+        if not shortfall:
+            return ""
+        return f"Too short to answer: {shortfall}. `suchus run {self.name()}` without --quick answers."
+
+    def _sized_minima(self) -> Mapping[str, float]:
+        """Return ``answer_minima`` for the size of the robot: a smaller robot does the same in less time."""
+        minima = self.answer_minima
+        if not minima or not hasattr(self, "robot"):
+            return minima
+        default = type(self)()
+        if self.robot.length >= default.robot.length:  # type: ignore[attr-defined]
+            return minima
+        numbers = {name: getattr(default, name) for name in minima if isinstance(getattr(default, name), float)}
+        length_factor = self.robot.length / default.robot.length  # type: ignore[attr-defined]
+        mass_factor = self.robot.mass / default.robot.mass  # type: ignore[attr-defined]
+        sized = rescale_fields(default, [*numbers], length_factor=length_factor, mass_factor=mass_factor)
+        factors = {name: min(sized.get(name, number) / number, 1.0) for name, number in numbers.items()}
+        return {name: factors.get(name, 1.0) * minimum for name, minimum in minima.items()}
+
+    def _shortfall(self, minima: Mapping[str, float]) -> str:
+        """Return the first field that is below its minimum, as a clause; empty if none is."""
+        for name, minimum in minima.items():
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value
             if count < minimum:
                 size_text = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
-                return f"Not judged: {size_text}, and {minimum:g} at least are needed to meet what is judged."
+                return f"{size_text}, and {minimum:g} at least are needed"
         return ""
 
     def settings(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import overload
 import numpy as np
 
 from suchus.core.errors import InvalidDesign, UnreadableFile
+from suchus.core.reading import read_text
 from suchus.flow.mesh import TriangleMesh, mesh_of_sdf
 from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
@@ -104,9 +105,9 @@ def from_outline(points: np.ndarray | Path | str) -> Polygon:
         return Polygon(corners=points)
     path = Path(points)
     try:
-        lines = [line.split("#")[0].replace(",", " ").split() for line in path.read_text(encoding="utf-8").splitlines()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise UnreadableFile(f"the outline {path} cannot be read: {error}.") from error
+        lines = [line.split("#")[0].replace(",", " ").split() for line in read_text(path).splitlines()]
+    except UnreadableFile as error:
+        raise UnreadableFile(f"the outline cannot be read: {error}") from error
     rows = [line for line in lines if line]
     numbers = _numbers(rows[_is_heading(rows) :], path)
     return Polygon(corners=np.array(_uncounted(numbers, path)).reshape(-1, 2))

@@ -1,10 +1,12 @@
 """Keypoints of the midline whose frames are later than those of the others.
 
 Neighbours have a constant distance. If one of them is late, the distance varies: with the turn of the link in every
-cycle, and with the pace from cycle to cycle. Both effects are tested separately.
+cycle, and with the pace from cycle to cycle. Both effects are tested separately, and either half of the film must show
+the lag: a path that turns, or a walk that stops, leaves variations that look like lags, but not the same twice.
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -31,9 +33,14 @@ _BENDS = 5  # greatest power of time in the fit of a path
 _HARMONICS = 4  # greatest number of harmonics in the fit of a path
 _SKIN = 0.01  # [link]; least standard deviation of a distance
 _MAX_LINK = 0.5  # [trunk]; a longer link may bend between its keypoints, which nothing shows
+_MAX_CHORD_BEND = 0.05  # [rad]; root mean square of the bend at a longer link that says nothing of the pace
 _CHORD = 0.1  # [link]; standard deviation of the distance of keypoints with such a bend
 _WHITE = 0.3  # mean square of residuals' steps over twice their variance, above which they count as independent
 _UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
+_MAX_LAG_RATIO, _MIN_HALF_Z = (
+    2.0,
+    2.0,
+)  # lag in half of a film over that in the whole film; its standard errors, by the pace
 _EXACT = 1e-4  # [link]; least error of a keypoint's position
 _SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
 
@@ -52,6 +59,7 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
     if tracks.view == "side":  # bends to the sides shorten what is seen of a link
         return reasons
     lags = _Lags(tracks, clock, time)
+    halves = _halves(tracks, clock, time)
     while len(chain) >= 3:
         links = lags.links(list(pairwise(chain)))
         link_lags = {pair: link.lag for pair, link in links.items()}
@@ -73,6 +81,9 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
             lag_by_point = {name: max(point_lags[name], key=abs) for name in lagging_points[:1]}
         else:
             lag_by_point = lags.inner(chain, links) or lags.at_an_end(chain)
+        lag_by_point = {
+            name: lag for name, lag in lag_by_point.items() if all(half.agrees(chain, name, lag) for half in halves)
+        }
         if not lag_by_point:
             break
         for name, lag in lag_by_point.items():
@@ -84,12 +95,23 @@ def find_late_keypoints(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " 
     return reasons
 
 
+def _halves(tracks: Tracks, clock: Clock, time: Float[np.ndarray, " frame"]) -> list["_Lags"]:
+    """Return the lags in either half of a film, in each of which a keypoint that is late is late by the same time."""
+    middle = len(time) // 2
+    halves = []
+    for part in (slice(None, middle), slice(middle, None)):
+        half_tracks = replace(tracks, time=tracks.time[part], position=tracks.position[part])
+        if all(np.isfinite(half_tracks.at(name)[:, 0]).sum() >= _FRAMES for name in tracks.midline):
+            halves.append(_Lags(half_tracks, clock, time[part]))
+    return halves
+
+
 def _trunk_length(tracks: Tracks) -> float:
-    """Return the length of the trunk along its points, or of all links of the midline where it is not known."""
+    """Return the length of the trunk along its points, or of all links of its midline where it is not known."""
     length = tracks.trunk_length()
     if np.isfinite(length):
         return length
-    chain = tracks.midline
+    chain = tracks.trunk_chain
     links = [float(np.nanmedian(np.linalg.norm(tracks.at(a) - tracks.at(b), axis=-1))) for a, b in pairwise(chain)]
     return float(np.nansum(links))
 
@@ -101,6 +123,11 @@ def _independent_fraction(residual: Float[np.ndarray, " frame"]) -> float:
     if len(steps) < _FRAMES or np.var(values) == 0.0:
         return 1.0
     return float(np.clip(np.mean(steps**2) / (2 * _WHITE * np.var(values)), 1.0 / len(values), 1.0))
+
+
+def _is_near(lag: float, other: float) -> bool:
+    """Return whether two lags have one sign and about one size."""
+    return lag * other > 0.0 and 1.0 / _MAX_LAG_RATIO < lag / other < _MAX_LAG_RATIO
 
 
 class _LaggedLink(NamedTuple):
@@ -271,6 +298,23 @@ class _Lags:
                     decrease[name] += float(row[self._zero_index] - row[index])
         return max(pair, key=lambda name: decrease[name])
 
+    def agrees(self, chain: Sequence[str], name: str, lag: float) -> bool:
+        """Return whether the frames here show, too, that a point is late by about a lag [s].
+
+        Either its links vary least at such a lag, or the pace says it. Too few frames show nothing.
+        """
+        neighbours = midline_neighbours(chain, name)
+        links = self.links([(neighbour, name) for neighbour in neighbours])
+        if not links:
+            return False
+        varies = np.sum([link.varies for link in links.values()], axis=0)
+        by_turns = float(self.lags[int(np.argmin(varies))])
+        index = int(np.argmin(np.abs(self.lags - lag)))
+        paced = self._paced(chain, name)
+        is_by_turns = float(varies[index]) < float(varies[self._zero_index]) and _is_near(by_turns, lag)
+        is_by_pace = paced.z_score > _MIN_HALF_Z and _is_near(paced.lag, lag)
+        return is_by_turns or is_by_pace
+
     def at_an_end(self, chain: Sequence[str]) -> dict[str, float]:
         """Return the first or last point of a chain if its lag by the pace is significant [s]."""
         estimates = {name: self._paced(chain, name) for name in (chain[0], chain[-1]) if len(self._time) >= _FRAMES}
@@ -307,7 +351,9 @@ class _Lags:
             self._tracks.rate * _moving_line(place, half)[1] * link_direction, axis=-1
         ) / np.linalg.norm(link_direction, axis=-1)
         use = np.isfinite(axial_velocity) & np.isfinite(link_length)
-        if use.sum() < _FRAMES:
+        bend = max(self._mean_square_bends.get(point, 0.0) for point in (name, neighbour))
+        is_long = use.any() and float(np.median(link_length[use])) > self._max_link
+        if use.sum() < _FRAMES or (is_long and bend > _MAX_CHORD_BEND**2):  # its chord may vary with the pace
             return 0.0, _UNKNOWN
         angle = 2 * np.pi * np.multiply.outer(self._tracks.time[use], np.arange(1, _HARMONICS + 1)) / self._clock.period
         X, _ = np.linalg.qr(np.hstack([np.ones((use.sum(), 1)), np.cos(angle), np.sin(angle)]))

@@ -1,7 +1,7 @@
 """Marker files of motion capture: TRC, a text, and C3D, which the ``c3d`` library reads, an optional extra.
 
-Both hold places in three dimensions, a unit and a rate, and do not say which axis is up: it is the one along which the
-trunk lies farthest from the feet.
+Both hold places in three dimensions, a unit and a rate, and do not say which axis is up: it is that of y and z along
+which the trunk lies farther from the feet. An animal that climbs or hangs is turned later, see ``surface``.
 """
 
 import warnings
@@ -33,7 +33,7 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
 
     Raises:
         UnreadableFile: the file is broken, its unit is not known, or the library that reads it is not installed.
-        UnusableTracks: it holds no frames, or it cannot be seen which axis is up.
+        UnusableTracks: it holds no frames.
     """
     points, place, rate, unit, frame = _trc(path) if path.suffix.lower() == ".trc" else _c3d(path)
     if unit not in UNITS or unit == "px":
@@ -46,14 +46,14 @@ def read_markers(path: Path, *, names: Mapping[str, str]) -> Tracks:
     return Tracks(
         time=(frame - frame[0]) / rate,
         points=point_names,
-        position=UNITS[unit] * upright(place, point_names, path.name),
+        position=UNITS[unit] * upright(place, point_names),
         unit="m",
         source=path.name,
     )
 
 
-def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray:
-    """Return the positions with the vertical axis last, right-handed; the trunk is above the feet."""
+def upright(place: np.ndarray, points: tuple[str, ...]) -> np.ndarray:
+    """Return the positions with the vertical axis last, right-handed: y or z, along which trunk and feet lie apart."""
     trunk = [points.index(point) for point in _TRUNK if point in points]
     feet = [points.index(leg) for leg in LEGS if leg in points]
     if not trunk or not feet:
@@ -63,12 +63,7 @@ def upright(place: np.ndarray, points: tuple[str, ...], name: str) -> np.ndarray
         axis=1
     )  # frame by frame: the animal goes on
     trunk_offset = np.nanmedian(middles.filled(np.nan), axis=0)
-    up_axis = 1 if abs(trunk_offset[1]) > abs(trunk_offset[2]) else 2
-    if not trunk_offset[up_axis] > 0.0:
-        raise UnusableTracks(
-            f"in {name} the feet lie above the trunk along y and along z: the up axis must be y or z; turn the axes."
-        )
-    return place if up_axis == 2 else place[..., [2, 0, 1]]
+    return place[..., [2, 0, 1]] if abs(trunk_offset[1]) > abs(trunk_offset[2]) else place
 
 
 def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarray]:
@@ -146,7 +141,10 @@ def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarra
             numbered_frames = [(number, points_of) for number, points_of, _ in reader.read_frames(copy=True)]
             rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
     except Exception as error:
-        raise UnreadableFile(f"{path} cannot be read as a C3D file: {' '.join(str(error).split())}.") from error
+        raise UnreadableFile(
+            f"{path} cannot be read as a C3D file: it is damaged, cut, or of another kind; export it again, or give a "
+            "TRC file."
+        ) from error
     frames = [points_of for _, points_of in numbered_frames]
     samples = np.array(frames, dtype=float).reshape(len(frames), -1, 5)[:, : len(points)]
     place = samples[..., :3].copy()

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.ndimage import median_filter
 
 from suchus.animals.capture.tracks import Tracks
 
@@ -15,6 +16,12 @@ _MIN_PAUSE = 0.05  # [film]; shorter rests belong to the gait
 _LONGER = 2.0  # length of a pause over that of the longest other rest: rests that recur belong to the gait
 _ALWAYS = 0.3  # [film]; a longer rest is a pause in any case
 _MIN_FRAMES = 8  # the same in frames
+_MAX_INTERRUPTION = 3  # frames; a shorter movement within a rest is noise
+_JUMP_WINDOW = 5  # frames of the median that leaves out jumps
+_NOISE_FACTOR, _MAX_NOISY_REST = (
+    2.5,
+    0.35,
+)  # displacement at rest over that by noise; greatest such over that of the walk
 
 
 class Bout(NamedTuple):
@@ -28,12 +35,13 @@ class Bout(NamedTuple):
 
 def longest_bout(tracks: Tracks) -> Bout:
     """Return the longest stretch of tracks in which the animal does not pause; all of them if it never does."""
-    activity = _activity(tracks)
-    if activity is None:
+    activity, noise = _activity(tracks)
+    if not len(activity):
         return Bout(tracks, ())
     usual_activity = float(np.nanpercentile(activity, _WALK_PERCENTILE))
     min_frames = max(_MIN_FRAMES, _MIN_PAUSE * len(activity))
-    rests = _runs(activity < _MAX_REST * usual_activity)
+    max_rest = max(_MAX_REST * usual_activity, min(_NOISE_FACTOR * noise, _MAX_NOISY_REST * usual_activity))
+    rests = _joined_runs(_runs(activity < max_rest))
     lengths = np.array([end - start for start, end in rests])
     pauses = [
         run
@@ -60,34 +68,62 @@ def longest_bout(tracks: Tracks) -> Bout:
     return Bout(tracks.between(float(tracks.time[first_frame]), float(tracks.time[last_frame])), (note,))
 
 
-def _activity(tracks: Tracks) -> Float[np.ndarray, " frame"] | None:
-    """Return how far the keypoints go in a short time about each frame [m or px]; None in too short a film."""
+def _activity(tracks: Tracks) -> tuple[Float[np.ndarray, " frame"], float]:
+    """Return the speed of the keypoints in a short time about each frame, and what noise makes of it [m/s or px/s].
+
+    The first is empty in too short a film.
+    """
     frames = len(tracks.time)
     half = max(2, round(_WINDOW * frames))
     if frames < 20 * half:
-        return None
+        return np.zeros(0), 0.0
     place = np.full_like(tracks.position, np.nan)
+    noises = []
     for index in np.ndindex(*place.shape[1:]):
         series = tracks.position[:, *index]
         is_seen = np.isfinite(series)
         if is_seen.mean() > 0.5:
-            filled_series = np.interp(tracks.time, tracks.time[is_seen], series[is_seen])
+            filled_series = median_filter(
+                np.interp(tracks.time, tracks.time[is_seen], series[is_seen]), _JUMP_WINDOW, mode="nearest"
+            )
+            noises.append(1.4826 * float(np.median(np.abs(filled_series[1:-1] - _neighbour_mean(filled_series)))))
             padded_series = np.pad(filled_series, half // 2, mode="edge")
             place[:, *index] = np.convolve(padded_series, np.ones(2 * (half // 2) + 1), mode="valid") / (
                 2 * (half // 2) + 1
             )
     place = place[:, np.isfinite(place).all(axis=(0, 2))]
     if not place.shape[1]:
-        return None
+        return np.zeros(0), 0.0
     next_frames, previous_frames = (
         np.minimum(np.arange(frames) + half, frames - 1),
         np.maximum(np.arange(frames) - half, 0),
     )
+    steps = float(np.median(np.diff(tracks.time)))
     speed = (
         np.linalg.norm(place[next_frames] - place[previous_frames], axis=-1)
         / (tracks.time[next_frames] - tracks.time[previous_frames])[:, None]
     )
-    return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1))
+    smoothed_noise = float(np.median(noises)) * np.sqrt(2.0 / (half + 1))  # of the difference of two means
+    return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1)), smoothed_noise / (half * steps)
+
+
+def _neighbour_mean(series: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"]:
+    """Return the mean of the frames before and behind each frame but the first and the last."""
+    return (series[2:] + series[:-2]) / 2
+
+
+def _joined_runs(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return runs of frames at rest, those joined that a few frames part which are shorter than both."""
+    joined: list[tuple[int, int]] = []
+    for start, end in runs:
+        if joined:
+            first_start, first_end = joined[-1]
+            gap = start - first_end
+            if gap <= min(_MAX_INTERRUPTION, first_end - first_start, end - start):
+                joined[-1] = first_start, end
+                continue
+        joined.append((start, end))
+    return joined
 
 
 def _runs(mask: Bool[np.ndarray, " frame"]) -> list[tuple[int, int]]:

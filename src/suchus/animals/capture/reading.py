@@ -30,6 +30,13 @@ SOFTWARE = ("DeepLabCut", "SLEAP", "LightningPose", "Anipose", "NWB")
 _TABLE_SOFTWARE = ("DeepLabCut", "LightningPose", "SLEAP", "Anipose")  # whose CSV tables need no library
 _TEXT = (".csv", ".txt")
 _NO_RATE = "{} does not give its frame rate; give it, as in --fps 50."
+_CONTENTS = {
+    "DeepLabCut": "a table of scorer, bodyparts and coords",
+    "LightningPose": "a table of scorer, bodyparts and coords",
+    "SLEAP": "frames of instances, or an analysis with tracks and node_names",
+    "Anipose": "columns of points, fnum and NAME_ncams",
+    "NWB": "a PoseEstimation in its behavior module",
+}
 _INSTALL = 'pip install "suchus[capture]"'
 
 
@@ -80,7 +87,7 @@ def read_poses(
     return Tracks(
         time=time,
         points=points,
-        position=upright(position, points, path.name) if position.shape[-1] == 3 else position,
+        position=upright(position, points) if position.shape[-1] == 3 else position,
         unit="px",
         source=path.name,
     )
@@ -143,7 +150,10 @@ def _load(path: Path, software: str, rate: float | None) -> Any:
                 f"{path} holds body parts that belong to no individual, as 'single' ones do, which movement "
                 "does not read; give the CSV table instead: deeplabcut.analyze_videos_converth5_to_csv writes it."
             ) from error
-        raise UnreadableFile(f"{path} cannot be read as a file of {software}: {text}.") from error
+        raise UnreadableFile(
+            f"{path} cannot be read as a file of {software}: it is damaged, or lacks what such files hold "
+            f"({_CONTENTS[software]}); say with --software what wrote it, or give a CSV table."
+        ) from error
 
 
 def _guess(path: Path) -> str:
@@ -269,6 +279,8 @@ def summary(walk: Walk) -> list[str]:
         if name not in walk.numbers:
             return "(it does not bend)" if name.startswith(("spine", "tail")) and not walk.lacks else "(not seen)"
         value, _, error, _ = walk.numbers[name]
+        if value != value:  # a standing index of a chain with fewer than two joints that bend
+            return "(not known)"
         error_text = f" ± {scale * error:.{digits}f}" if error == error and error > 0.0 else ""
         return f"{scale * value:.{digits}f}{error_text}"
 

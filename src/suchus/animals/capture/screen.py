@@ -61,6 +61,11 @@ def screen_tracks(tracks: Tracks) -> Screened:
     source, faults, notes = tracks, _lost_keypoints(tracks), []
     tracks = _trusted_tracks(source, faults)
     noise = {name: _noise(tracks.at(name)) for name in tracks.points}
+    if not _scale(tracks) > 0.0:
+        raise UnusableTracks(
+            f"in {tracks.source} the keypoints of the trunk lie at one place, so that nobody knows where the body "
+            "heads; track them again."
+        )
     faults |= _stuck_keypoints(tracks, noise)
     tracks = _trusted_tracks(source, faults)
     scale = _scale(tracks)
@@ -438,6 +443,7 @@ _ALWAYS = 0.9  # fraction of frames that counts as always
 _IN_A_ROW = 0.5  # fraction of successive frames among these; noise has less
 _OFTEN = 0.1  # greatest fraction of frames with feet exchanged by noise
 _SOMETIMES = 0.02  # fraction of frames that noise does not explain
+_MIN_SWAPPED_FRAMES = 3  # least number of them; fewer are jumps
 _CLEARLY = 0.3  # distance by which feet are across the body where they are exchanged, over their usual distance
 
 
@@ -469,7 +475,8 @@ def _check_sides(tracks: Tracks) -> None:
             offset = offsets[left_leg, right_leg]
             with np.errstate(invalid="ignore"):
                 frames = np.flatnonzero(offset < -_CLEARLY * np.nanmedian(np.abs(offset)))
-            if len(frames) < _SOMETIMES * len(offset) or np.mean(np.diff(frames) == 1) < _IN_A_ROW:
+            min_frames = max(_MIN_SWAPPED_FRAMES, _SOMETIMES * len(offset))
+            if len(frames) < min_frames or np.mean(np.diff(frames) == 1) < _IN_A_ROW:
                 _check_noise(tracks, left_leg, right_leg, share)
                 continue
             raise UnusableTracks(

@@ -22,6 +22,7 @@ _MIN_FRAMES = 4  # frames; where their steps are even, none is longer than all t
 _RATE = (5.0, 5000.0)  # [1/s]; slower cannot show a step, faster is no camera
 _TRUNK = (0.01, 5.0)  # [m]; from a hatchling lizard to a crocodile longer than any measured
 _JUMPED = 3.0  # times the usual length of a link; longer, and one of its points is somewhere else
+_MAX_POSITION = 1e9  # [m or px]; what is farther off is no position, but a number for a lost point
 MAX_LOST_FRACTION = 0.5
 """Share of lost frames beyond which a point is useless [-]."""
 View = Literal["top", "side"]
@@ -232,6 +233,15 @@ def check_tracks(tracks: Tracks) -> None:
             "rename with --names THEIRS=OURS, or track them."
         )
     _check_time(tracks)
+
+
+def without_absurd_positions(tracks: Tracks) -> Tracks:
+    """Return tracks in which numbers that are no position are lost points: infinite, or beyond 1e9 m or px."""
+    with np.errstate(invalid="ignore"):
+        is_absurd = np.isinf(tracks.position) | (np.abs(tracks.position) > _MAX_POSITION)
+    if not is_absurd.any():
+        return tracks
+    return replace(tracks, position=np.where(is_absurd.any(axis=-1, keepdims=True), np.nan, tracks.position))
 
 
 def check_size(tracks: Tracks) -> None:

@@ -16,8 +16,16 @@ from suchus.animals.capture.names import check_feet, check_trunk, unused_text
 from suchus.animals.capture.pauses import longest_bout
 from suchus.animals.capture.screen import screen_tracks
 from suchus.animals.capture.strides import half_width, over_phase, per_stride, times
+from suchus.animals.capture.surface import level_surface
 from suchus.animals.capture.swings import Clock, walk_clock
-from suchus.animals.capture.tracks import Tracks, UnusableTracks, check_size, check_tracks, lacking
+from suchus.animals.capture.tracks import (
+    Tracks,
+    UnusableTracks,
+    check_size,
+    check_tracks,
+    lacking,
+    without_absurd_positions,
+)
 from suchus.core.checks import require
 from suchus.robot.design import LEGS
 
@@ -28,6 +36,7 @@ _STRAIGHT = 1e-6  # [rad]; smaller bends have no phase
 _BINS = 20  # bins of phase, for the spread
 _SHARP = 3.0  # least amplitude of a bend over its standard error
 _MIN_VISIBLE_FRACTION = 0.25  # least fraction of frames with all points of a signal
+_MIN_BENDING_POINTS = 4  # points of a midline, from more on its bends show the period
 _MIN_LAG = 0.015  # [cycle]; phase lag of a foot that may be late in the film
 _LAG_TOLERANCE = 0.35  # relative difference between its phase lag and its lag in position
 _PLACE_ERROR = 0.005  # error of a step by the unknown shape of the swing, over its length
@@ -85,6 +94,10 @@ class Walk:
     """The mean cycle over ``phase`` and ``leg``: the four angles with ``<name>_spread``, ``foot_speed``, ``stance``.
     Phase 0 is where a gait of this footfall begins: LF starts to swing."""
 
+    slope: float = 0.0
+    """Angle of the surface on which the animal walks against level, pi/2 on a wall, pi on a ceiling; 0 where it is
+    nearly level or not seen [rad]."""
+
     def value(self, name: str) -> float:
         """Return a number without its spread."""
         return self.numbers[name].value
@@ -119,7 +132,9 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     check_tracks(tracks)
     check_feet(tracks)
     unused = unused_text(tracks.points)
-    tracks, pauses = longest_bout(tracks)
+    tracks = without_absurd_positions(tracks)
+    surface = level_surface(tracks)
+    tracks, pauses = longest_bout(surface.tracks)
     screening = screen_tracks(tracks)
     ground = _rest_ground(screening.tracks)
     screening = screening._replace(tracks=ground.tracks)
@@ -189,6 +204,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
         lacks=lacking(tracks.points),
         notes=(
             *(f"{name} {reason}" for name, reason in faults.items()),
+            *surface.notes,
             *pauses,
             *ground.notes,
             *([unused] if unused else ()),
@@ -208,6 +224,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             unsure,
         ),
         cycle=_mean_cycle(tracks, mean_reading, feet, zero),
+        slope=surface.slope,
     )
 
 
@@ -443,7 +460,13 @@ def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
                 f"in {tracks.source} {name} can be seen in {100 * visible_fraction:.0f} % of the frames, at least "
                 f"{100 * _MIN_VISIBLE_FRACTION:.0f} % are needed: its points are lost in turns; track them again."
             )
-    if not visible_signals:  # a midline without girdles and feet: it sways
+    if not visible_signals:  # a midline without girdles and feet: it bends, or its direction sways
+        chain = tracks.midline
+        bends = zip(chain[1:-1], joint_bends(tracks, chain), strict=True) if len(chain) > _MIN_BENDING_POINTS else ()
+        visible_signals = {
+            f"the bend at {name}": bend for name, bend in bends if np.isfinite(bend).mean() >= _MIN_VISIBLE_FRACTION
+        }
+    if not visible_signals:
         front, rear = tracks.line
         visible_signals["the trunk's direction"] = continuous(azimuth(tracks, front, rear))
     return visible_signals

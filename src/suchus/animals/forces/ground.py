@@ -106,11 +106,16 @@ def walked_forces(
 
     Raises:
         UnsuitedRobot: the robot lacks four limbs with foot paths.
-        UnusableTracks: keypoints are lacking, too few cycles were seen, the size is unknown, or hardly any choice can
-            be walked.
+        UnusableTracks: keypoints are lacking, too few cycles were seen, the size is unknown, the animal climbs, or
+            hardly any choice can be walked.
         OutsideLimits: the body cannot follow.
     """
     check_needs(robot, ROBOT_NEEDS, "forces of a filmed walk")
+    if walk.slope:
+        raise UnusableTracks(
+            f"in {walk.source} the animal climbs on a surface at {np.degrees(walk.slope):.0f} degrees against level; "
+            "forces are computed on level ground only, where the weight acts across it: leave --forces out."
+        )
     names, unknown = names_with_interval(walk), unknown or Unknown()
     trunk_length = trunk if trunk is not None else _trunk(walk)
     body = resize_body(robot, trunk_length / hips_ahead(robot, 0))

@@ -31,6 +31,10 @@ def _interval_text(value: float, lower_bound: float, upper_bound: float, unit: s
     return f"{value:.3g}{ends}{unit and ' '}{unit}"
 
 
+SPEED_TOLERANCE = 0.05
+"""Relative difference in speed from the film up to which the body walks as the animal does [-]."""
+
+
 def _on_land(data: xr.Dataset) -> list[str]:
     """Return the lines for a walk: body, peak forces of the feet, loads of belly and tail, speed."""
     lines = [f"body: {data.attrs['body']}'s, {_interval(data, 'length')} long, {_interval(data, 'mass')}"]
@@ -45,7 +49,7 @@ def _on_land(data: xr.Dataset) -> list[str]:
     lines.append(f"belly and tail carry {_interval(data, 'carried_belly')} and {_interval(data, 'carried_tail')}")
     if "speed_to_filmed" in data.quantity.values:
         speed_ratio, remark = data.sel(quantity="speed_to_filmed"), ""
-        if not float(speed_ratio.low) <= 1.0 <= float(speed_ratio.high):
+        if float(speed_ratio.low) > 1.0 + SPEED_TOLERANCE or float(speed_ratio.high) < 1.0 - SPEED_TOLERANCE:
             remark = ": it does not walk as the animal does, so that forces along the course are not the animal's"
         times = _interval(data, "speed_to_filmed")
         lines.append(f"the body comes {times} times as far in the same time as on the film{remark}")

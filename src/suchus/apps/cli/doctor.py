@@ -37,6 +37,7 @@ _EXTRAS = {
     "usd": "suchus export --format usd",
     "hardware": "suchus drive and suchus calibrate, with real servos",
     "meshes": "suchus import of a robot with meshes",
+    "lessons": "QR codes of suchus lessons --serve",
     "cluster": "studies on many machines",
 }
 """Purpose of each extra; extras for developers only are left out."""

@@ -9,9 +9,10 @@ from typing import Annotated
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.terminal import working
+from suchus.apps.cli.terminal import print_code, working
 from suchus.apps.report.lesson_server import LessonServer
 from suchus.apps.report.lessons import laboratory_absence, lesson_files, write_lessons
+from suchus.apps.report.qr_code import qr_text
 from suchus.core.checks import require
 from suchus.core.files import check_replaceable, check_writable
 
@@ -54,6 +55,7 @@ def lessons(words: Sequence[str]) -> int:
             print(f"the laboratory is left out: {reason}")
         print(f"begin with {start_page}: it needs no network, so send the folder to the class")
         if server is not None:
+            print_code(qr_text(server.address))
             print(f"phones in this network open {server.address} (the sheet names it); Ctrl-C ends it.", flush=True)
             server.wait()
             print("ended.")

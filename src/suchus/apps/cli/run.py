@@ -73,7 +73,7 @@ def perform(experiment: Experiment, name: str, results_folder: Path, progress: P
         outcome = experiment.run(progress)
         progress("drawing", 1.0)
         with styled():
-            figures = experiment.draw(outcome)
+            figures = {} if outcome.too_short else experiment.draw(outcome)
         progress("saving", 1.0)
         folder = save_outcome(outcome, figures, experiment, results_folder / name, command=command)
     for path in outcome.checkpoint_files:
@@ -97,12 +97,13 @@ def show_outcome(question: Experiment, saved_run: SavedRun) -> None:
     console.print(f"[bold]{escape(question.title)}[/]")
     for line in gait_sentence(question):
         console.print(escape(line))
-    console.print(escape(answer(saved_run.outcome.decides)))
-    rows = answer_rows(question.answers, saved_run.outcome.measures)
+    console.print(escape(answer(saved_run.outcome.statement)))
+    rows = [] if saved_run.outcome.too_short else answer_rows(question.answers, saved_run.outcome.measures)
     numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
     for row in rows:
         numbers.add_row(*(escape(cell) for cell in row if cell or len(numbers.columns) > 2))
-    console.print(numbers)
+    if rows:
+        console.print(numbers)
     if saved_run.outcome.verdicts:
         table = Table(box=None, padding=(0, 2, 0, 0))
         for heading, side in (

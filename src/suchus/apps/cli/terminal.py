@@ -54,6 +54,13 @@ class Bars:
         self._progress.console.print(escape(text), highlight=False, soft_wrap=True)
 
 
+def print_code(text: str) -> None:
+    """Print a QR code made of characters, dark on light; nothing where output is no terminal that has them."""
+    console = Console(highlight=False)
+    if text and console.is_terminal and console.encoding.startswith("utf"):
+        console.print(escape(text), style="black on bright_white", soft_wrap=True)
+
+
 @contextmanager
 def working() -> Iterator[Bars]:
     """Show progress while the block runs."""

@@ -12,8 +12,8 @@ from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
 from suchus.apps.cli.word_checks import option_values
 from suchus.core.files import check_replaceable, check_writable
-from suchus.experiments.train import TASKS, Judgement, Training
-from suchus.experiments.train import train as conduct
+from suchus.experiments.train import FAULT_KINDS, TASKS, Judgement, Training
+from suchus.experiments.train import train_seeds as conduct
 from suchus.robot.control.policy import SUFFIX
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
@@ -43,12 +43,20 @@ class TrainOptions:
     """Units of the hidden layer of the network; 0 for none."""
     seed: int = 0
     """Seed of everything that is random."""
+    seeds: int = 1
+    """Number of seeds, from this one on; they share the time, and their policies one file."""
     table_generations: int | None = None
     """Generations of the table, in the place of time."""
     network_generations: int | None = None
     """Generations of the network, in the place of time; 0 for the table alone."""
     start: str | None = None
     """Policy, its name or its file, whose gait and table are taken, so that a network alone is trained."""
+    faults: tuple[str, ...] = FAULT_KINDS
+    """Faults of a servo, one of which is drawn for each episode, in the tasks fault and velocity_untold."""
+    joints: tuple[str, ...] = ()
+    """Servos one of which fails in them; by default those of the limbs."""
+    onset: tuple[float, float] | None = None
+    """Earliest and latest time of the fault after the first step [s]; by default the first half of an episode."""
     out: Path | None = None
     """Folder of the policy; by default out/train/NAME. A training that began there is continued."""
 
@@ -75,6 +83,9 @@ def train(words: Sequence[str]) -> int:
         hidden=options.hidden,
         seed=options.seed,
         start=None if options.start is None else policy_of(options.robot, options.start),
+        faults=options.faults,
+        joints=options.joints,
+        onset=options.onset,
     )
     folder = options.out or Path("out") / "train" / training.name
     check_writable(folder)
@@ -84,6 +95,7 @@ def train(words: Sequence[str]) -> int:
         result = conduct(
             training,
             folder,
+            seeds=options.seeds,
             minutes=options.minutes,
             table_generations=options.table_generations,
             network_generations=options.network_generations,
@@ -93,6 +105,9 @@ def train(words: Sequence[str]) -> int:
     for label, judgement in (("table", result.table_judgement), ("policy", result.judgement)):
         print(f"{label:<6}  {judgement_text(judgement)}")
     record = dict(result.policy.training)
+    if "seeds" in record:
+        errors = ", ".join(f"{float(error):.1%}" for error in record["errors of the seeds"].split())
+        print(f"errors of the seeds {record['seeds']}: {errors}; the policy is that of seed {record['seed']}")
     print(f"{time.process_time() - cpu:.0f} s of processor time; the same bytes again: {record['command']}")
     print(f"see it: suchus view {_robot_word(words, training)} --policy {result.path}")
     print(f"policy: {result.path}")

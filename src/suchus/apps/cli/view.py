@@ -21,7 +21,7 @@ from suchus.robot.design import Robot, check_needs
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait
 from suchus.robot.policies import POLICIES, policy_of
-from suchus.robot.robots import ROBOTS
+from suchus.robot.robots import FOREIGN_ENDINGS, ROBOTS
 from suchus.swimming.water import swim_of
 
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -100,7 +100,10 @@ def view(words: Sequence[str]) -> int:
 
 
 def _is_record(word: str) -> bool:
-    return word.endswith(".nc") or (path_exists(Path(word)) and not word.endswith(".toml") and word not in ROBOTS)
+    """Return whether a word names a record: any file but those of robots."""
+    if Path(word).suffix.lower() in (".toml", *FOREIGN_ENDINGS):
+        return False
+    return word.endswith(".nc") or (path_exists(Path(word)) and word not in ROBOTS)
 
 
 def _walk(words: Sequence[str]) -> int:

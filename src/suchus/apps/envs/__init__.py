@@ -13,6 +13,7 @@ from suchus.apps.envs.policies import (
 )
 from suchus.apps.envs.senses import SENSES, reading_columns, senses
 from suchus.apps.envs.single import CrocodileEnv, action_space, observation_space
+from suchus.apps.envs.symmetry import mirror_actions, mirror_observations
 from suchus.apps.envs.task import AnyGoal, Breaks, CommandRanges, Goal, Landing, Pushes, Rewards, Task, remaining
 from suchus.apps.envs.vector import CrocodileVectorEnv
 
@@ -42,6 +43,8 @@ __all__ = [
     "SwimToGoal",
     "Task",
     "action_space",
+    "mirror_actions",
+    "mirror_observations",
     "observation_space",
     "play",
     "reading_columns",

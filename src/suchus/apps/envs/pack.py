@@ -47,6 +47,7 @@ _MIN_STANDING_FRACTION = 0.6
 
 The article's robot has 0.99 when it stands and 0.2 when it lies.
 """
+_NOISE_STEPS = 32  # of an episode whose noise is drawn together
 _STRAIGHT_GAIT = "limbs_only"  # the trunk is straight in its first posture
 
 
@@ -155,6 +156,12 @@ class Chance:
     """Seed of the commands."""
     noise_seed: int = 0
     """Seed of the noise on the observations."""
+    body_seed: int = 0
+    """Seed of the errors of the robot as built."""
+    uphill: float = 0.0
+    """Slope along the walk beside that of the task's ground [rad]."""
+    sideways: float = 0.0
+    """Slope across the walk, likewise [rad]."""
 
     @property
     def fault(self) -> str:
@@ -241,6 +248,7 @@ class Pack:
             run = Run(robot=task.body, gait=task.gait, ground=task.ground, lake=task.lake)
         else:
             run = Run(robot=task.body, gait=task.swimming_gait, water=task.flow)
+        self._run, self._varies = run, task.tolerances is not None or task.slope > 0.0
         self.loop = loop = Loop([run] * count, task.timestep, ticks=0, controller=self._actor, fast=task.fast)
         self._tanks = None if task.flow is None else Tanks(run, loop.batch, periods, loop.period)
         self._observer = Observer(task.robot, count, task.observed)
@@ -303,6 +311,8 @@ class Pack:
             faults = () if chance.broken is None else (chance.broken,)
             pushes = () if chance.push is None else (chance.push,)
             beginning = displace_joints(self.task, self._begin, jitter)
+            if self._varies:
+                self.loop.exchange(i, self._drawn_run(chance))
             self.loop.restart(i, beginning, faults, pushes)
             if self._tanks is not None:
                 self._tanks.restart(i, beginning, faults, pushes)
@@ -312,6 +322,13 @@ class Pack:
             self._phases[i] = chance.phase
             self._set_goal(i)
             self._tracking.restart(i, self._facing()[i])
+
+    def _drawn_run(self, chance: Chance) -> Run:
+        """Return the run of an episode: a robot with the errors of a build, on a slope."""
+        ground, tolerances = self._run.ground, self.task.tolerances
+        ground = replace(ground, uphill=ground.uphill + chance.uphill, sideways=ground.sideways + chance.sideways)
+        run = replace(self._run, ground=ground)
+        return run if tolerances is None else tolerances.draw_run(run, chance.body_seed)
 
     def feel(self) -> Float[np.ndarray, "run n"]:
         """Return the observation of each robot, see ``senses``."""
@@ -350,9 +367,11 @@ class Pack:
 
     def _noise(self, columns: int) -> Float[np.ndarray, "run n"]:
         """Return the noise on the observations of this instant; it depends on each robot's seed and time alone."""
-        ticks = self.loop.clocks.tolist()
-        seeds = [chance.noise_seed for chance in self.chances]
-        rows = [np.random.default_rng([s, t]).standard_normal(columns) for s, t in zip(seeds, ticks, strict=True)]
+        steps = (self.loop.clocks // self._actor.periods).tolist()
+        rows = [
+            _noise_block(chance.noise_seed, step // _NOISE_STEPS, columns)[step % _NOISE_STEPS]
+            for chance, step in zip(self.chances, steps, strict=True)
+        ]
         return np.asarray(self.task.noise * np.array(rows), dtype=np.float32)
 
     def act(self, actions: Float[np.ndarray, "run servo"], active_mask: Bool[np.ndarray, " run"]) -> Terms:
@@ -384,11 +403,14 @@ class Pack:
         if self._tanks is not None:
             work = self._tanks.act(target, active_mask)
             self.loop.skip(self._actor.periods)
+        elif (powers := self.loop.advance_many(self._actor.periods)) is not None:
+            for power in powers:
+                work += power * self.loop.period
         else:
             for period in range(1, self._actor.periods + 1):
                 self.loop.decide()
                 self.loop.advance(
-                    need_forces=period == self._actor.periods
+                    need_forces=period == self._actor.periods, only_power=True
                 )  # contact loads are read at the end of the action only
                 work += self.loop.batch.effort[..., ABSOLUTE_POWER].sum(axis=1) * self.loop.period
         self._command_change = np.where(active_mask[:, None], command_change, self._command_change)
@@ -491,6 +513,18 @@ class Pack:
         return f"it rolled over {time_text}: the {root} is tilted by {tilt:.0f} degrees, beyond {max_tilt:.0f}"
 
 
+@lru_cache(maxsize=1024)
+def _noise_block(seed: int, block: int, columns: int) -> Float[np.ndarray, "step n"]:
+    """Return the noise of some steps of an episode in a row, of unit variance.
+
+    Args:
+        seed: seed of the episode's noise.
+        block: number of the row of steps in it.
+        columns: columns of an observation.
+    """
+    return np.random.default_rng([seed, block]).standard_normal((_NOISE_STEPS, columns))
+
+
 def draw(task: Task, random: np.random.Generator) -> Chance:
     """Draw the random values of an episode: the phase of the clock, the bearing of the goal, the fault and the push.
 
@@ -517,4 +551,9 @@ def draw(task: Task, random: np.random.Generator) -> Chance:
         chance = replace(chance, command_seed=int(random.integers(2**31)))
     if task.noise > 0.0:
         chance = replace(chance, noise_seed=int(random.integers(2**31)))
+    if task.tolerances is not None:
+        chance = replace(chance, body_seed=int(random.integers(2**31)))
+    if task.slope > 0.0:
+        uphill, sideways = random.uniform(-task.slope, task.slope, 2).tolist()
+        chance = replace(chance, uphill=uphill, sideways=sideways)
     return chance

@@ -11,10 +11,11 @@ from suchus.apps.envs.task import AnyGoal, Breaks, CommandRanges, Goal, Landing,
 from suchus.core.errors import InvalidDesign, SuchusError, UnknownName
 from suchus.robot.control.observation import FAILURE_READINGS, ROBOT_READINGS
 from suchus.robot.design import Robot
+from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS, gait_of
 from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Ground, Lake
+from suchus.sim.land import Ground, Lake, Tolerances
 from suchus.sim.land.waters import Slice, Space
 
 
@@ -33,6 +34,8 @@ SWIM_SPAN = 1.4
 """Span of the actions in the task Swim [rad]: 0.75 for the wave on the tail's cable and 0.6 to steer."""
 SHORE_SPAN = 2.5
 """Span of the actions in the task Shore [rad]: from limbs folded back to the forward end of a stride."""
+VELOCITY_SLOPE = radians(3)
+"""Greatest slope of the ground in the task Velocity, along and across the walk [rad]."""
 _SLOPE, _OFFSHORE = radians(8), 1.6  # distance of the water line from the beginning [m], where the robot floats free
 _CRAWL = Task()
 _SWIM = replace(
@@ -77,6 +80,8 @@ TASKS: Mapping[str, Task] = MappingProxyType(
             ),
             delay=0.02,
             noise=0.01,
+            tolerances=Tolerances(),
+            slope=VELOCITY_SLOPE,
         ),
         "Swim": _SWIM,
         "Shore": replace(
@@ -96,7 +101,8 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
     """Return a task, given itself or by its name, with some fields changed.
 
     A robot or a gait may be given by its name in the catalog or the path of its file; a robot brings its gait and its
-    size, see ``Task.for_robot``. With ``water`` a flow takes the place of the lake.
+    size, see ``Task.for_robot``. With ``water`` a flow takes the place of the lake. With ``fast`` the time step becomes
+    a control period, the longest that there is, unless ``timestep`` is named.
 
     Raises:
         UnknownName: there is no such task, field, robot, gait or servo; the message lists those that are.
@@ -128,6 +134,7 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
         "pushes": (Pushes, type(None)),
         "commands": (CommandRanges, type(None)),
         "lake": (Lake, type(None)),
+        "tolerances": (Tolerances, type(None)),
         "water": (str, Slice, Space),
         "swim": (Gait, type(None)),
         "goal": (*get_args(AnyGoal), type(None)),
@@ -138,6 +145,8 @@ def resolve_task(task: Task | str, changes: Mapping[str, Any]) -> Task:
             raise InvalidDesign(f"task.{name} is {str(value)[:80]!r}; a {allowed_types} is needed.")
     if "robot" in values:
         task = task.for_robot(values.pop("robot"), values.pop("gait", None))
+    if values.get("fast") is True:
+        values.setdefault("timestep", control_period(task.robot))
     return replace(task, **values)
 
 

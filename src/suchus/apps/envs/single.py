@@ -1,28 +1,22 @@
 """One robot as a ``gymnasium.Env``: its spaces, the checks of what users give, and its picture, without OpenGL."""
 
-from dataclasses import dataclass
-from itertools import pairwise
+from functools import lru_cache
 from typing import Any
 
 import gymnasium
 import numpy as np
-import xarray as xr
 from jaxtyping import Float, UInt8
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.patches import Circle
 
 from suchus.apps.envs.pack import Pack
 from suchus.apps.envs.senses import senses
 from suchus.apps.envs.shelf import resolve_task
-from suchus.apps.envs.task import TERMS, AnyGoal, Landing, Task, Terms
+from suchus.apps.envs.task import TERMS, Task, Terms
 from suchus.core.errors import OutsideLimits, UnknownName
 from suchus.robot.control.observation import observation_layout
 from suchus.robot.design import Robot, layout
-from suchus.robot.robots import size_relative_to_article
 from suchus.sim.land.lake import up_direction
-from suchus.visual.figures import COLOURS, new, styled
-from suchus.visual.figures.posture import draw_posture
+from suchus.visual.replay.rendering import Renderer, Scenery
+from suchus.visual.skin import Poses, bone_names
 
 RENDER_MODES = ("rgb_array",)
 
@@ -139,142 +133,33 @@ def step_info(pack: Pack, terms: Terms) -> dict[str, np.ndarray]:
     return info | {"time": pack.time, "fault": pack.faults.copy(), "cause": pack.causes.copy()}
 
 
-def portrait(pack: Pack, robot: int) -> np.ndarray:
-    """Return a picture of one robot of a pack."""
-    text = f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}"
-    surroundings = Surroundings(
-        upward=up_direction(pack.task.ground), goal=pack.task.goal, goal_position=pack.goals[robot]
+def portrait(pack: Pack, robot: int) -> UInt8[np.ndarray, "height width 3"]:
+    """Return a picture of one robot of a pack in the look of the replays, as red, green and blue.
+
+    Water is blue; the goal is a ring, or a line where it is land, and an arrow points to one that is out of sight.
+    """
+    task, sensors = pack.task, pack.loop.sensors
+    place = layout(task.robot)
+    positions, quaternions = pack.loop.batch.body_poses(robot, bone_names(task.robot))
+    feet = np.array([sensors[f"{limb}_foot_position"][robot] for limb in place.limb_names]).reshape(-1, 3)
+    scenery = Scenery(
+        upward=up_direction(task.ground),
+        level=None if task.lake is None else task.lake.state_at(0.0)[0],
+        goal=None if task.goal is None else pack.goals[robot],
+        goal_radius=0.0 if task.goal is None else task.goal.within,
+        relief=task.ground.relief,
+        text=f"{pack.time[robot]:.2f} s  {pack.chances[robot].fault}",
     )
-    return picture(pack.task.robot, pack.record(robot), text, surroundings)
+    mass = np.array(sensors["centre_of_mass"][robot])
+    return _renderer(task.robot).render(Poses(positions, quaternions), feet, mass, scenery)
+
+
+@lru_cache(maxsize=4)
+def _renderer(robot: Robot) -> Renderer:
+    """Return what draws a robot, the same for all environments with it."""
+    return Renderer(robot)
 
 
 def metadata(task: Task) -> dict[str, Any]:
     """Return render modes and frame rate, as gymnasium's ``metadata``."""
     return {"render_modes": list(RENDER_MODES), "render_fps": round(1.0 / task.decision)}
-
-
-WIDTH, HEIGHT = 640, 480
-"""Width and height of a picture [pixel]."""
-_DPI = 100
-_PLACES = ((0.12, 0.622, 0.8, 0.333), (0.12, 0.09, 0.8, 0.52))
-"""Rectangles of the two views as fractions of the picture: left, bottom, width, height."""
-_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_HEIGHT = (
-    1.6,
-    0.5,
-    0.75,
-)  # [m]; what is seen of the article's robot: along the walk, across it, and up
-_VIEW_DEPTH = 0.03  # [m]; what is seen below the ground
-_TINT = 0.22  # opacity of the water and of the goal
-_EDGE = 0.45  # [-]; of the picture's sides from its middle, where an arrow points to a goal beyond it
-_ARROW = 0.06  # [-]; its length, of the picture's width
-
-
-_SKY_FRACTION = 0.4
-"""Share of the view from the side that is above a robot which floats high above the ground [-]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surroundings:
-    """What a picture shows beside the robot."""
-
-    upward: Float[np.ndarray, "3"]
-    """Unit vector against gravity."""
-    goal: AnyGoal | None = None
-    """The goal; None without a goal."""
-    goal_position: Float[np.ndarray, "2"] | None = None
-    """Position of the goal, forward and left in the world [m]."""
-
-
-def picture(
-    robot: Robot, record: xr.Dataset, text: str, surroundings: Surroundings
-) -> UInt8[np.ndarray, "height width 3"]:
-    """Return a robot from above and from its right side, with its centre of mass, as red, green and blue.
-
-    Water is blue, its surface a line; the goal is a ring, or a line where it is land, and an arrow at the edge of the
-    picture points to one that is beyond it. The view from the side rises with a robot that floats far above the ground.
-
-    Args:
-        robot: robot whose record it is.
-        record: record of one run, one sample.
-        text: what is written above.
-        surroundings: gravity and the goal.
-    """
-    with styled(font__size=9, axes__titlesize=10, xtick__labelsize=8, ytick__labelsize=8, axes__labelsize=9):
-        figure = new(width=WIDTH / _DPI, height=HEIGHT / _DPI)
-        figure.set_dpi(_DPI)
-        figure.set_layout_engine("none")  # finding a layout would take three quarters of the time
-        top_axes, side_axes = (figure.add_axes(rectangle) for rectangle in _PLACES)
-        top_axes.tick_params(labelbottom=False)
-        draw_posture(top_axes, robot, record, 0.0)
-        draw_posture(side_axes, robot, record, 0.0, view="side")
-        x, y, z = record.centre_of_mass.values[0].tolist()
-        view_length, view_width, view_depth, view_height = (
-            size_relative_to_article(robot).length * length
-            for length in (_VIEW_LENGTH, _VIEW_WIDTH, _VIEW_DEPTH, _VIEW_HEIGHT)
-        )
-        lower_bound = max(-view_depth, z - (1 - _SKY_FRACTION) * (view_height + view_depth))
-        top_axes.set(
-            xlim=(x - view_length / 2, x + view_length / 2),
-            ylim=(y - view_width / 2, y + view_width / 2),
-            ylabel="left [m]",
-            title=text,
-        )
-        side_axes.set(
-            xlim=(x - view_length / 2, x + view_length / 2),
-            ylim=(lower_bound, lower_bound + view_height + view_depth),
-            xlabel="forward [m]",
-            ylabel="up [m]",
-        )
-        if "water_level" in record:
-            draw_water(top_axes, side_axes, float(record.water_level[0]), surroundings.upward, y)
-        if surroundings.goal is not None and surroundings.goal_position is not None:
-            _draw_goal(top_axes, side_axes, surroundings.goal, surroundings.goal_position)
-        canvas: Any = FigureCanvasAgg(figure)
-        canvas.draw()
-    return np.array(canvas.buffer_rgba())[..., :3]
-
-
-def draw_water(top_axes: Axes, side_axes: Axes, level: float, upward: Float[np.ndarray, "3"], section_y: float) -> None:
-    """Draw the water of a lake as far as two views reach, its surface as a line.
-
-    Args:
-        top_axes: view from above; water is where there is some over the ground.
-        side_axes: view from the side.
-        level: level of the surface above the world's origin, against gravity [m].
-        upward: unit vector against gravity.
-        section_y: where the view from the side cuts the water [m].
-    """
-    x, y = np.array(top_axes.get_xlim()), np.array(top_axes.get_ylim())
-    depth = level - upward[0] * x[None, :] - upward[1] * y[:, None]
-    if (depth > 0.0).any():
-        top_axes.contourf(x, y, depth, levels=[0.0, max(depth.max(), 1e-9)], colors=[COLOURS["water"]], alpha=_TINT)
-    line = [(level - upward[1] * section_y) / upward[0]] if upward[0] else []  # where the surface meets the ground
-    ends = np.sort([*x, *(shore for shore in line if x[0] < shore < x[1])])
-    for pair in pairwise(ends):
-        heights = (level - upward[0] * np.array(pair) - upward[1] * section_y) / upward[2]
-        if heights.mean() > 0.0:
-            side_axes.fill_between(pair, 0.0, heights, color=COLOURS["water"], alpha=_TINT, linewidth=0, zorder=0.1)
-            side_axes.plot(pair, heights, color=COLOURS["water"], linewidth=1.2, zorder=0.2)
-
-
-def _draw_goal(top_axes: Axes, side_axes: Axes, goal: AnyGoal, position: Float[np.ndarray, "2"]) -> None:
-    """Draw the goal in both views, and an arrow towards it where it lies outside of the view from above."""
-    (x_min, x_max), (y_min, y_max) = top_axes.get_xlim(), top_axes.get_ylim()
-    colour = COLOURS["limbs_only"]
-    if isinstance(goal, Landing):
-        for ax in (top_axes, side_axes):
-            ax.axvline(float(position[0]), color=colour, linestyle=(0, (4, 2)))
-    else:
-        top_axes.add_patch(
-            Circle((float(position[0]), float(position[1])), goal.within, facecolor="none", edgecolor=colour)
-        )
-        side_axes.axvspan(
-            float(position[0]) - goal.within, float(position[0]) + goal.within, color=colour, alpha=_TINT, linewidth=0
-        )
-    centre = np.array([x_min + x_max, y_min + y_max]) / 2
-    direction = position - centre if not isinstance(goal, Landing) else np.array([position[0] - centre[0], 0.0])
-    overshoot = float((np.abs(direction) / (_EDGE * np.array([x_max - x_min, y_max - y_min]))).max())
-    if overshoot > 1.0:
-        head = centre + direction / overshoot
-        tail = head - _ARROW * (x_max - x_min) * direction / np.hypot(*direction)
-        top_axes.annotate("", tuple(head), tuple(tail), arrowprops={"arrowstyle": "-|>", "color": colour}, zorder=9)

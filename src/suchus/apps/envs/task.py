@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 from math import pi
 from types import MappingProxyType
 from typing import Any, Literal, get_args
@@ -34,7 +35,7 @@ from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault
 from suchus.sim.faults import FAULTS
-from suchus.sim.land import Ground, Lake
+from suchus.sim.land import Ground, Lake, Tolerances
 from suchus.sim.land.afloat import check_floats
 from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import FORMS, Form, Slice, Space
@@ -340,8 +341,20 @@ class CommandRanges:
             seed: seed of the episode.
             time: time since its beginning [s].
         """
-        random = np.random.default_rng([seed, int(time / self.interval + 1e-9)])
-        return float(random.uniform(*self.forward)), float(random.uniform(*self.turn))
+        return _drawn_command(self, seed, int(time / self.interval + 1e-9))
+
+
+@lru_cache(maxsize=4096)
+def _drawn_command(ranges: CommandRanges, seed: int, number: int) -> tuple[float, float]:
+    """Return a command of an episode: speed [m/s] and turning rate [rad/s].
+
+    Args:
+        ranges: the ranges.
+        seed: seed of the episode.
+        number: number of the command in it.
+    """
+    random = np.random.default_rng([seed, number])
+    return float(random.uniform(*ranges.forward)), float(random.uniform(*ranges.turn))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -454,6 +467,11 @@ class Task:
     """Time by which commanded angles reach the servos late, whole control periods, 0 to 0.2 [s]."""
     noise: float = 0.0
     """Standard deviation of white noise on every column of the observation, 0 to 1 [scale of the reading]."""
+    tolerances: Tolerances | None = None
+    """Errors of a build, drawn anew for each episode: masses, zeros and play of the servos, friction of the ground.
+    None for the robot as designed."""
+    slope: float = 0.0
+    """Greatest slope along and across the walk, drawn for each episode beside that of ``ground``, 0 to 0.5 [rad]."""
     fast: bool = False
     """Whether contacts are solved in less time and with less accuracy, see ``suchus.simulate``; for training."""
 
@@ -564,6 +582,16 @@ class Task:
             check.number("least_level", -1.0, 1.0, "")
             check.number("least_height", 0.0, 10.0, "m")
             check.number("noise", 0.0, 1.0, "")
+            check.number("slope", 0.0, 0.5, "rad")
+            check.that(
+                self.flow is None or (self.tolerances is None and self.slope == 0.0),
+                "task.water is a flow, in which every robot is as designed; leave tolerances and slope out, or take "
+                'water="sections"',
+            )
+            check.that(
+                self.goal is None or self.slope == 0.0,
+                f"task.slope is {self.slope} rad, and a goal lies on the ground as it is: leave one of them out",
+            )
             check.number("delay", 0.0, 20 * period, "s")
             periods = self.delay / period
             check.that(

@@ -59,9 +59,9 @@ class Tracking:
         facing = np.where(np.isfinite(facing), facing, self._facing)
         turned = (facing - self._facing + pi) % (2 * pi) - pi
         forward = displacement[:, 0] * np.cos(facing) + displacement[:, 1] * np.sin(facing)
-        motion = np.nan_to_num(np.stack([forward, turned], axis=1) / step)
+        motion = _finite(np.stack([forward, turned], axis=1) / step)
         error = self._heading_error + command[:, 1] * step - turned
-        lag = np.nan_to_num(np.abs(lag))
+        lag = _finite(np.abs(lag))
         active = active_mask[:, None]
         self._motion = np.where(active, motion + self._keep * (self._motion - motion), self._motion)
         self._tracking_error = np.where(active, lag + self._keep * (self._tracking_error - lag), self._tracking_error)
@@ -90,3 +90,9 @@ class Tracking:
         if self._task.commands is None:
             return np.zeros_like(command)
         return np.abs(self._motion - command) * self._task.decision
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Return an array whose numbers that are not finite are 0."""
+    is_finite = np.isfinite(values)
+    return values if is_finite.all() else np.where(is_finite, values, 0.0)

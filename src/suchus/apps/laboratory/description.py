@@ -153,7 +153,7 @@ def physics_facts(robot: Robot, gait: Gait, *, swims: bool) -> dict[str, Any]:
         "start": START,
         "control": {"begin": control.begin, "ramp": control.ramp},
         "loads": {"begin": STANCE_BEGIN_LOAD, "end": STANCE_END_LOAD, "shortest": MIN_STANCE_FRACTION},
-        "water": asdict(water) | {"added_mass": lake.added_mass, "shedding": lake.shedding},
+        "water": asdict(water) | {"added_mass": lake.added_mass, "shedding": lake.shedding, "splash": lake.splash},
         "gait_period": gait.period,
     }
 

@@ -39,6 +39,7 @@ class LessonServer:
 
     def __init__(self, files: Sequence[Path], port: int) -> None:
         served = {file.name: file for file in files} | {"": files[0]}
+        self._thread: Thread | None = None
         try:
             self._server = ThreadingHTTPServer(("", port), _handler(served))
         except OSError as error:
@@ -54,7 +55,8 @@ class LessonServer:
 
     def start(self) -> None:
         """Answer requests in a thread of its own, until the block ends."""
-        Thread(target=self._server.serve_forever, daemon=True).start()
+        self._thread = Thread(target=self._server.serve_forever, daemon=True)
+        self._thread.start()
 
     def wait(self) -> None:
         """Answer requests until Ctrl-C."""
@@ -69,6 +71,10 @@ class LessonServer:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """End the thread before the socket is closed: on a closed socket it would ask without pause."""
+        if self._thread is not None:
+            self._server.shutdown()
+            self._thread.join()
         self._server.server_close()
 
 

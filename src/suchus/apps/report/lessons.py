@@ -12,6 +12,7 @@ import numpy as np
 from suchus.apps.laboratory.engine import NoEngine, read_engine
 from suchus.apps.laboratory.link import constant_level, page_settings
 from suchus.apps.laboratory.page import laboratory_page
+from suchus.apps.report.qr_code import qr_picture
 from suchus.core.files import versions, write
 from suchus.core.progress import Progress, silent, staged
 from suchus.robot.control import Swimming
@@ -74,8 +75,8 @@ def write_lessons(
         folder: folder for the pages; made where it is not there.
         selection: the lessons; all if empty.
         progress: called with the share that is done, 0 to 1.
-        address: address of the folder for the class, with a slash at its end, as the sheet says it; empty if it has
-            none.
+        address: address of the folder for the class, with a slash at its end, as the list and the sheet say it, with a
+            QR code if segno is installed; empty if it has none.
 
     Raises:
         Unwritable: the place cannot be written to.
@@ -84,11 +85,11 @@ def write_lessons(
     templates, version = environment(), versions()["suchus"]
     laboratories = _laboratory_lessons(selection)
     links = [(f"{name}.html", f"{lesson.runs[0].robot.name}") for name, lesson in laboratories.items()]
+    codes = {lesson.name: qr_picture(f"{address}{lesson.name}.html" if address else "") for lesson in selection}
+    shared = {"lessons": selection, "address": address, "code": qr_picture(address), "version": version}
     pages = {
-        "index": templates.get_template("lessons.html").render(lessons=selection, laboratories=links, version=version),
-        "sheet": templates.get_template("lesson_sheet.html").render(
-            lessons=selection, address=address, version=version
-        ),
+        "index": templates.get_template("lessons.html").render(shared, laboratories=links),
+        "sheet": templates.get_template("lesson_sheet.html").render(shared, codes=codes),
     }
     for i, (lesson, following) in enumerate(zip(selection, [*selection[1:], None], strict=True)):
         page_progress = staged(progress, lesson.name, i / len(selection), (i + 1) / len(selection))
@@ -270,7 +271,7 @@ def _friction() -> Lesson:
         because="Friction does two things: feet push with it, and whatever drags over the ground is braked by it. "
         "If both were scaled alike and nothing else counted, the distance would not change at all. Look "
         "which feet slide, in which direction, and what the tail does.",
-        command="suchus run terrain --quick",
+        command="suchus run terrain",
         laboratory=gait,
     )
 
@@ -302,6 +303,6 @@ def _waves() -> Lesson:
         "body goes the other way. So a wave towards the tail swims forwards, and one towards the head "
         "swims backwards. How many waves there are decides how much of the pressing is along the body and "
         "how much only to the sides.",
-        command="suchus run swim_sweep --quick",
+        command="suchus run swim_sweep",
         laboratory=gait,
     )

@@ -76,7 +76,7 @@ def render_outcome_page(result: Result) -> str:
         "robot": _setting_name(outcome, "robot"),
         "gait": _setting_name(outcome, "gait"),
         "verdicts": list(verdict_rows(result)),
-        "carried": answer_rows(outcome.get("answers", ()), measures),
+        "carried": () if outcome.get("too_short") else answer_rows(outcome.get("answers", ()), measures),
         "differs": outcome.get("differs"),
         "replay": read_text(first_replay, 2 * _HEAVY) if first_replay is not None and is_embedded else "",
         "beside": [*result.replays[1 if is_embedded else 0 :], *result.films],

@@ -94,6 +94,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     verdicts.sort(key=lambda verdict: order.get(verdict["claim"], len(order)))
     verdict_by_claim = {str(verdict["claim"]): str(verdict["verdict"]) for verdict in verdicts}
     worth = standings(verdict_by_claim)
+    answered = {result.name: result for result in results if not result.outcome.get("too_short")}
     own_choices = ROBOTS.beside(robot.name, "chosen", ()) if robot.name in ROBOTS else ()
     return {
         "results": results,
@@ -115,8 +116,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "inputs": {name: [v for v in verdicts if worth[v["claim"]] == name] for name in _INPUT_STANDINGS},
         "tally": {result.name: _counts(v for v in verdicts if v["experiment"] == result.name) for result in results},
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
-        "beside": compare_with_animals(robot, {result.name: result for result in results}),
-        "metres": metres({result.name: result for result in results}),
+        "beside": compare_with_animals(robot, answered),
+        "metres": metres(answered),
         "shown": next((result for result in results if result.replays), None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",

@@ -84,6 +84,7 @@ class _Outcome(_OutcomePart):
     films: list[_File] = []
     replays: list[_File] = []
     unjudged: str = ""
+    too_short: str = ""
 
 
 def check_described(outcome: Any, file: Path) -> None:

@@ -19,6 +19,7 @@ from suchus.core.writing import keep
 
 _SEAL = b"\nsuchus sha256 "
 _SEAL_LENGTH = len(_SEAL) + 64 + 1  # [byte]
+_MIN_SEAL_PART, _SEAL_SEARCH = 8, 4096  # [byte]; beginning of a seal that is known as one; where else one is looked for
 
 
 def sealed(data: bytes) -> bytes:
@@ -30,10 +31,14 @@ def sealed(data: bytes) -> bytes:
 
 
 def holds(data: bytes) -> bool | None:
-    """Return whether a file is as it was written; None where it has no seal."""
+    """Return whether a file is as it was written; None where it has no seal.
+
+    A seal that is cut, or that other bytes follow, is none that suchus wrote: the file is not as it was written.
+    """
     body, end = data[:-_SEAL_LENGTH], data[-_SEAL_LENGTH:]
     if not end.startswith(_SEAL):
-        return None
+        is_cut = any(data.endswith(_SEAL[:length]) for length in range(_MIN_SEAL_PART, len(_SEAL)))
+        return False if is_cut or _SEAL in data[-_SEAL_SEARCH:] else None
     return end == sealed(body)[-_SEAL_LENGTH:]
 
 

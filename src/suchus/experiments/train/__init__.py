@@ -2,7 +2,20 @@
 
 from suchus.experiments.train.conduct import TrainingResult, train
 from suchus.experiments.train.judging import COMMANDS, Judgement, judge
-from suchus.experiments.train.spec import TASKS, Training
+from suchus.experiments.train.replicates import train_seeds
+from suchus.experiments.train.spec import FAULT_KINDS, TASKS, Training
 from suchus.experiments.train.tracking import TrackedMotion, motion
 
-__all__ = ["COMMANDS", "TASKS", "Judgement", "TrackedMotion", "Training", "TrainingResult", "judge", "motion", "train"]
+__all__ = [
+    "COMMANDS",
+    "FAULT_KINDS",
+    "TASKS",
+    "Judgement",
+    "TrackedMotion",
+    "Training",
+    "TrainingResult",
+    "judge",
+    "motion",
+    "train",
+    "train_seeds",
+]

@@ -16,7 +16,7 @@ from suchus.core.writing import write
 from suchus.experiments.train.evaluate import draw_episodes, evaluate_policies, evaluate_table, with_network
 from suchus.experiments.train.judging import Judgement, judge
 from suchus.experiments.train.network_search import EPISODES, NetworkSearch
-from suchus.experiments.train.spec import Training
+from suchus.experiments.train.spec import FAULT_KINDS, Training
 from suchus.experiments.train.table_search import EXPLORATION, TableSearch
 from suchus.robot.control.policy import SUFFIX, Policy, policy_bytes, save_policy, with_training
 
@@ -98,7 +98,7 @@ def train(
         IncompatibleRecord: its store is of another training or version.
     """
     folder = Path(folder)
-    _check_extent(minutes, table_generations, network_generations)
+    check_extent(training, minutes, table_generations, network_generations)
     deadline, begin = time.monotonic() + 60.0 * minutes, time.monotonic()
     table_deadline = begin + 60.0 * minutes * (_TABLE_FRACTION if network_generations != 0 else 1.0)
     curve = _Curve(folder / CURVE)
@@ -136,6 +136,8 @@ def train(
             f"{table_judgement.error:.3g}"
         )
         best, judgement = None, table_judgement
+    if best is None and training.kind.has_faults:
+        say("no network was better than the table in the episodes, so that the policy is the table alone")
     if losses:
         record |= {"episode loss of the table": f"{losses[0]:.4g}", "episode loss": f"{min(losses):.4g}"}
     record |= {"error": f"{judgement.error:.4g}", "error of the table": f"{table_judgement.error:.4g}"}
@@ -152,8 +154,20 @@ def train(
     )
 
 
-def _check_extent(minutes: float, table_generations: int | None, network_generations: int | None) -> None:
-    """Refuse minutes and generations with which there is no policy."""
+def check_extent(
+    training: Training, minutes: float, table_generations: int | None, network_generations: int | None
+) -> None:
+    """Refuse minutes and generations with which there is no policy.
+
+    Args:
+        training: the training.
+        minutes: its time [min].
+        table_generations: generations of the table; None where time decides.
+        network_generations: generations of the network; None where time decides.
+
+    Raises:
+        InvalidDesign: a number is too small or too large, or a task with faults has no network.
+    """
     if not 0.05 <= minutes <= 1e5:
         raise InvalidDesign(f"train.minutes is {minutes:g} min; 0.05 to 100000 min is allowed.")
     if table_generations is not None and not 2 * EXPLORATION < table_generations <= 10_000:
@@ -163,18 +177,34 @@ def _check_extent(minutes: float, table_generations: int | None, network_generat
         )
     if network_generations is not None and not 0 <= network_generations <= 100_000:
         raise InvalidDesign(f"train.network_generations is {network_generations}; 0 to 100000 are allowed.")
+    if training.kind.has_faults and network_generations == 0:
+        raise InvalidDesign(
+            f"train.network_generations is 0, and the task {training.task} trains a network: a table knows no faults. "
+            "Give 1 at least, or take the task velocity."
+        )
 
 
-def repeat_command(training: Training, table_generations: int, network_generations: int) -> str:
-    """Return the command that makes the same policy again, to the byte."""
+def repeat_command(training: Training, table_generations: int, network_generations: int, seeds: int = 1) -> str:
+    """Return the command that makes the same policy again, to the byte.
+
+    Args:
+        training: the training, with its first seed.
+        table_generations: generations of the table [-].
+        network_generations: generations of the network [-].
+        seeds: number of seeds [-].
+    """
     options = [f"--robot {training.robot.name}"]
     options += [f"--gait {training.gait.name}"] if training.gait is not None else []
     options += [f"--{name} {value:g}" for name in ("speed", "turn") if (value := getattr(training, name)) is not None]
     options += [] if training.axis else ["--still-axis"]
     options += [f"--hidden {training.hidden}"] if training.hidden else []
     options += [f"--seed {training.seed}"]
+    options += [f"--seeds {seeds}"] if seeds > 1 else []
     options += [f"--table-generations {table_generations}"] if training.start is None else []
     options += [f"--start {training.start.name}"] if training.start is not None else []
+    options += [f"--faults {' '.join(training.faults)}"] if training.faults != FAULT_KINDS else []
+    options += [f"--joints {' '.join(training.joints)}"] if training.joints else []
+    options += [f"--onset {training.onset[0]:g} {training.onset[1]:g}"] if training.onset else []
     return " ".join(["suchus train", training.task, *options, f"--network-generations {network_generations}"])
 
 

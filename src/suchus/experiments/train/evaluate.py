@@ -8,12 +8,11 @@ import xarray as xr
 from jaxtyping import Float
 
 from suchus.core.errors import Doubtful
-from suchus.experiments.train.spec import Training
+from suchus.experiments.train.spec import SEGMENT_PERIODS, SEGMENTS, Training
 from suchus.experiments.train.tracking import motion, tracking_loss
 from suchus.robot.control import Learned
 from suchus.robot.control.observation import observation_layout
 from suchus.robot.control.policy import Layer, Policy
-from suchus.robot.design import layout
 from suchus.robot.design.scale import coarse_step, control_period
 from suchus.robot.motion import START
 from suchus.sim.fault import Fault
@@ -21,11 +20,8 @@ from suchus.sim.faults import FAULTS
 from suchus.sim.land import Run, Tolerances, simulate
 
 _SETTLING_PERIODS, _WINDOW_PERIODS = 0.75, 2.0  # of a table's candidate, over the period of the gait
-_SEGMENT_PERIODS, _SKIPPED_PERIODS = 3.0, 1.0  # of an episode
-_SEGMENTS = 2
+_SKIPPED_PERIODS = 1.0  # of each command of an episode
 _SAMPLE_STRIDE = 5
-FAULT_KINDS = ("limp", "locked")
-"""Names of the faults of a servo that are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,16 +101,15 @@ def draw_episodes(training: Training, policy: Policy, count: int, seed: int) -> 
         seed: seed of the draw.
     """
     random = np.random.default_rng([training.seed, 1, seed])
-    servos = [servo for limb in layout(training.robot).limbs for servo in layout(training.robot).servos[limb.servos]]
-    period = control_period(training.robot)
+    servos, period = training.failing_servos, control_period(training.robot)
     episodes = []
     for _ in range(count):
-        forward = random.uniform(0.15, 1.0, _SEGMENTS) * policy.max_speed
-        turn = random.uniform(-1.0, 1.0, _SEGMENTS) * policy.max_turn
-        servo, kind = servos[int(random.integers(max(len(servos), 1)))] if servos else "", int(random.integers(2))
-        latest = _SEGMENT_PERIODS * training.base_gait.period
-        onset = round(float(np.ceil((START + random.uniform(0.0, latest)) / period)) * period, 12)
-        faults = (FAULTS[FAULT_KINDS[kind]](servo, at=onset),) if training.kind.has_faults else ()  # type: ignore[call-arg]
+        forward = random.uniform(0.15, 1.0, SEGMENTS) * policy.max_speed
+        turn = random.uniform(-1.0, 1.0, SEGMENTS) * policy.max_turn
+        servo = servos[int(random.integers(len(servos)))] if servos else ""
+        kind = training.faults[int(random.integers(len(training.faults)))]
+        onset = round(float(np.ceil((START + random.uniform(*training.onset_range)) / period)) * period, 12)
+        faults = (FAULTS[kind](servo, at=onset),) if training.kind.has_faults else ()  # type: ignore[call-arg]
         body_seed = int(random.integers(1_000_000))
         episodes.append(Episode(tuple(forward.tolist()), tuple(turn.tolist()), faults, body_seed))
     return tuple(episodes)
@@ -122,8 +117,8 @@ def draw_episodes(training: Training, policy: Policy, count: int, seed: int) -> 
 
 def episode_run(training: Training, policy: Policy, episode: Episode) -> Run:
     """Return the run of a policy in an episode; a policy that is told of faults is told at their onset."""
-    length = _SEGMENT_PERIODS * training.base_gait.period
-    times = [START + number * length for number in range(_SEGMENTS)]
+    length = SEGMENT_PERIODS * training.base_gait.period
+    times = [START + number * length for number in range(SEGMENTS)]
     period = control_period(training.robot)
 
     def course(values: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
@@ -157,19 +152,19 @@ def evaluate_policies(
     """
     runs = [episode_run(training, policy, episode) for policy in policies for episode in episodes]
     period = training.base_gait.period
-    duration = _whole_periods(training, START + _SEGMENTS * _SEGMENT_PERIODS * period)
+    duration = _whole_periods(training, START + SEGMENTS * SEGMENT_PERIODS * period)
     record = _simulate(runs, duration, fast=fast)
     losses = np.zeros(len(runs))
-    for number in range(_SEGMENTS):
-        begin = START + number * _SEGMENT_PERIODS * period
+    for number in range(SEGMENTS):
+        begin = START + number * SEGMENT_PERIODS * period
         start = _whole_periods(training, begin + _SKIPPED_PERIODS * period)
-        end = min(_whole_periods(training, begin + _SEGMENT_PERIODS * period), duration)
+        end = min(_whole_periods(training, begin + SEGMENT_PERIODS * period), duration)
         forward, turn = (
             np.array([getattr(episode, name)[number] for _ in policies for episode in episodes])
             for name in ("forward", "turn")
         )
         measured_motion = motion(record, start, end)
-        losses += tracking_loss(measured_motion, forward, turn, policies[0].max_speed, policies[0].max_turn) / _SEGMENTS
+        losses += tracking_loss(measured_motion, forward, turn, policies[0].max_speed, policies[0].max_turn) / SEGMENTS
     return np.asarray(losses.reshape(len(policies), len(episodes)).mean(axis=1))
 
 

@@ -10,12 +10,13 @@ import numpy as np
 
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName, UnsuitedRobot
-from suchus.robot.control.policy import ACTIONS, Policy, mirror_shift, robot_digest
+from suchus.robot.control.policy import ACTIONS, AXIS_ACTIONS, Policy, mirror_shift, robot_digest
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import default_gait
 from suchus.robot.motion import Gait, check_limits, max_stroke_factor, min_gait_period, trunk_amplitude
 from suchus.robot.robots import ROBOTS
+from suchus.sim.faults import FAULTS
 from suchus.sim.land import Ground, Lake
 from suchus.sim.land.afloat import check_floats
 from suchus.swimming.water import swim_of
@@ -50,6 +51,12 @@ FAULT_READINGS = ("tracking_error",)
 """Readings that a task with faults adds: what the servos on the bus report."""
 FAILURE_READINGS = ("failure",)
 """Readings that a task adds in which the robot is told of its faults."""
+FAULT_KINDS = ("limp", "locked")
+"""Names of the faults of a servo that are drawn unless others are named."""
+SEGMENTS = 2
+"""Commands of an episode of the network, one after the other [-]."""
+SEGMENT_PERIODS = 3.0
+"""Duration of each of them, over the period of the gait [-]."""
 _PERIODS_PER_DECISION = 5
 _SPANS = {
     "rate": 0.5, "stroke": 0.5, "asymmetry": 0.8, "bend": 0.4, "tail": 0.4, "wave": 0.4, "lag": 0.1, "limb_stroke": 0.5,
@@ -57,7 +64,6 @@ _SPANS = {
 }  # fmt: skip
 """Greatest correction of each parameter by a network."""
 _MAX_RATE, _MIN_RATE = 3.0, 0.4
-_AXIS_PARAMETERS = ("bend", "tail", "wave", "lag")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +88,12 @@ class Training:
     """Seed of everything that is random [-]."""
     start: Policy | None = None
     """Policy whose gait and table are taken, so that a network alone is trained; None for a table of its own."""
+    faults: tuple[str, ...] = FAULT_KINDS
+    """Faults of a servo one of which is drawn for each episode of a task with faults, by their names."""
+    joints: tuple[str, ...] = ()
+    """Servos one of which fails; empty for those of the limbs."""
+    onset: tuple[float, float] | None = None
+    """Earliest and latest time of the fault after the first step [s]; None for the first half of an episode."""
 
     def __post_init__(self) -> None:
         if self.task not in TASKS:
@@ -94,6 +106,7 @@ class Training:
                     check.number(name, 1e-4, 100.0, unit)
         if self.start is not None:
             self._check_start(self.start)
+        self._check_faults()
         place = layout(self.robot)
         if self.kind.is_swim:
             check_floats(self.robot, self.lake or Lake(level=self.robot.length))
@@ -107,6 +120,36 @@ class Training:
                 f"gait {self.base_gait.name!r} has measured curves, whose parameters cannot be trained: give a gait of "
                 "foot paths and bends."
             )
+
+    def _check_faults(self) -> None:
+        """Refuse faults that cannot be drawn, and settings of faults in a task without them.
+
+        Raises:
+            UnknownName: no such fault of a servo, or no such servo.
+            InvalidDesign: the task has no faults, none is named, or the onset is beyond the episode.
+        """
+        changed = [
+            name
+            for name, default in (("faults", FAULT_KINDS), ("joints", ()), ("onset", None))
+            if getattr(self, name) != default
+        ]
+        if changed and not self.kind.has_faults:
+            with_faults = ", ".join(name for name, kind in TASKS.items() if kind.has_faults)
+            raise InvalidDesign(
+                f"training.{changed[0]} is given, and nothing fails in the task {self.task}: leave it out, or take one "
+                f"of the tasks {with_faults}."
+            )
+        allowed = tuple(name for name, kind in FAULTS.items() if kind.acts_on == "servo")
+        for name in self.faults:
+            if name not in allowed:
+                raise UnknownName("fault of a servo", str(name)[:40], allowed)
+        for name in self.joints:
+            if name not in layout(self.robot).servos:
+                raise UnknownName("servo", str(name)[:40], layout(self.robot).servos)
+        with Checks("training", self) as check:
+            check.that(len(self.faults) > 0, "training.faults is empty; name one fault of a servo at least")
+            if self.onset is not None:
+                check.range("onset", 0.0, self.episode_duration, "s")
 
     def _check_start(self, start: Policy) -> None:
         """Refuse a policy whose table the training cannot take.
@@ -131,9 +174,9 @@ class Training:
 
     @property
     def name(self) -> str:
-        """Name of the policy: the task, and the robot unless it is the caiman."""
-        parts = [self.task, *([] if self.robot.name == "caiman" else [self.robot.name])]
-        return "_".join([*parts, *([] if self.axis else ["still_axis"])])
+        """Name of the policy: the task, whether the axis is still, and the robot unless it is the caiman."""
+        robot_parts = [] if self.robot.name == "caiman" else [self.robot.name]
+        return "_".join([self.task, *([] if self.axis else ["still_axis"]), *robot_parts])
 
     @property
     def kind(self) -> TaskKind:
@@ -147,6 +190,22 @@ class Training:
             return self.start.gait
         gait = self.gait or (swim_of(self.robot) if self.kind.is_swim else default_gait(self.robot))
         return gait if self.axis else gait.without("axis")
+
+    @property
+    def episode_duration(self) -> float:
+        """Duration of an episode of the network after the first step [s]."""
+        return SEGMENTS * SEGMENT_PERIODS * self.base_gait.period
+
+    @property
+    def onset_range(self) -> tuple[float, float]:
+        """Earliest and latest time of the fault after the first step [s]."""
+        return self.onset or (0.0, 0.5 * self.episode_duration)
+
+    @property
+    def failing_servos(self) -> tuple[str, ...]:
+        """Servos one of which fails in an episode."""
+        place = layout(self.robot)
+        return self.joints or tuple(servo for limb in place.limbs for servo in place.servos[limb.servos])
 
     @property
     def ground(self) -> Ground:
@@ -186,7 +245,7 @@ class Training:
     @property
     def actions(self) -> tuple[str, ...]:
         """Parameters that the network corrects."""
-        whole_body = tuple(name for name in self.bounds if self.axis or name not in _AXIS_PARAMETERS)
+        whole_body = tuple(name for name in self.bounds if self.axis or name not in AXIS_ACTIONS)
         has_paths = self.base_gait.has("foot paths")
         limb_actions = ("limb_stroke", *(("limb_lowering",) if has_paths else ())) if self.base_gait.limbs else ()
         return whole_body + (limb_actions if not self.kind.is_swim else ())

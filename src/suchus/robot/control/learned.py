@@ -27,6 +27,7 @@ _SMOOTHING = 0.1  # time constant with which parameters follow the table, over t
 _MAX_SMOOTHING = 0.2  # [s]; the same at most
 _MAX_HEADING_ERROR = 1.0  # [rad]; the commanded heading is no further from the measured one
 _ERROR_MEMORY = 0.5  # time constant of the tracking error, over the period of the gait [-]
+_MAX_FAILURE_TIME = 1e6  # [s]
 _READING_SENSORS = {
     "upward": ("orientation",),
     "ahead": ("orientation",),
@@ -80,6 +81,12 @@ class Learned:
             if self.forward is not None:
                 check.course("forward", -100.0, 100.0, "m/s", start=0.0)
             check.course("turn", -100.0, 100.0, "rad/s", start=0.0)
+            early = [time for time, _ in self.failures if not 0.0 <= time <= _MAX_FAILURE_TIME]
+            check.that(
+                not early,
+                f"learned.failures has a failure at {early[0] if early else 0} s; 0 to {_MAX_FAILURE_TIME:g} s is "
+                "allowed",
+            )
 
     @property
     def feels(self) -> bool:
@@ -120,6 +127,15 @@ class Learned:
                 )
         return "; ".join(parts) + "." if parts else ""
 
+    def unread_sentence(self) -> str:
+        """Return a sentence that says that failures are told which the policy does not read; empty if it does."""
+        if not self.failures or "failure" in self.policy.readings:
+            return ""
+        return (
+            f"learned.failures names {self.failures[0][1]}, and policy {self.policy.name!r} reads no failures: it acts "
+            "as if it was not told. Take a policy of the task fault."
+        )
+
     @staticmethod
     def start(runs: Runs, period: float) -> "LearnedController":
         """Start the policies of a batch, each run with its own.
@@ -129,7 +145,8 @@ class Learned:
             UnknownName: a failure of a servo that the robot lacks.
 
         Warns:
-            Doubtful: a command is beyond what a policy was trained for; it gets the nearest one.
+            Doubtful: a command is beyond what a policy was trained for, and gets the nearest one; or a policy is told
+                of failures that it does not read.
         """
         sentences: dict[str, None] = {}
         for control, robot in dict.fromkeys(zip(runs.controls, runs.robots, strict=True)):
@@ -137,7 +154,7 @@ class Learned:
             for _, servo in control.failures:
                 if servo not in layout(robot).servos:
                     raise UnknownName("servo", servo, layout(robot).servos)
-            sentences[control.clipped_sentence()] = None
+            sentences |= {control.clipped_sentence(): None, control.unread_sentence(): None}
         for sentence in filter(None, sentences):
             warnings.warn(Doubtful(sentence, kind="command", size=1.0), stacklevel=2)
         return LearnedController(runs.controls, runs.robots, period)

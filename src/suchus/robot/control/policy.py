@@ -6,8 +6,8 @@ The file is an ``.npz`` of plain arrays and texts. It is never unpickled.
 import io
 import tomllib
 import zipfile
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -68,6 +68,8 @@ ACTIONS: Mapping[str, Action] = MappingProxyType(
     }
 )
 """Parameters of the pattern that a policy may set, by name."""
+AXIS_ACTIONS = ("bend", "tail", "wave", "lag")
+"""Those that bend spine and tail."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,24 @@ class Layer:
     """Weights, one row for each input [-]."""
     bias: tuple[float, ...]
     """Bias, one number for each output [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replicate:
+    """What the same training gave with another seed: all that differs from the policy that it belongs to."""
+
+    seed: int
+    """Seed of its training."""
+    speeds: tuple[float, ...]
+    """Commanded forward speeds of its table [m/s]."""
+    turns: tuple[float, ...]
+    """Commanded turning rates of its table [rad/s]."""
+    table: tuple[tuple[tuple[float, ...], ...], ...]
+    """Values of its parameters, as ``Policy.table``."""
+    layers: tuple[Layer, ...] = ()
+    """Layers of its network; none for the table alone."""
+    training: tuple[tuple[str, str], ...] = ()
+    """What its training reached."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,6 +150,8 @@ class Policy:
     """Time between two answers of the network [s]."""
     training: tuple[tuple[str, str], ...] = ()
     """Record of the training: what, and its value."""
+    replicates: tuple[Replicate, ...] = ()
+    """What the same training gave with other seeds."""
 
     def __post_init__(self) -> None:
         with Checks("policy", self) as check:
@@ -152,6 +174,34 @@ class Policy:
                 sizes = [len(layer.weights) for layer in self.layers[1:]]
                 outputs = [len(layer.bias) for layer in self.layers[:-1]]
                 check.that(sizes == outputs, f"policy.layers take {sizes} numbers and are given {outputs}")
+        for replicate in self.replicates:
+            self._of_replicate(replicate)
+
+    def _of_replicate(self, replicate: Replicate) -> "Policy":
+        """Return the policy of another seed.
+
+        Raises:
+            InvalidDesign: its table or its layers do not suit this policy.
+        """
+        record = (*self.training, ("seed", str(replicate.seed)), *replicate.training)
+        has_network = bool(replicate.layers)
+        return replace(
+            self,
+            speeds=replicate.speeds,
+            turns=replicate.turns,
+            table=replicate.table,
+            layers=replicate.layers,
+            readings=self.readings if has_network else (),
+            actions=self.actions if has_network else (),
+            spans=self.spans if has_network else (),
+            training=tuple(dict(record).items()),
+            replicates=(),
+        )
+
+    @property
+    def seeds(self) -> tuple["Policy", ...]:
+        """The policies of all seeds of the training, this one first."""
+        return (replace(self, replicates=()), *map(self._of_replicate, self.replicates))
 
     @property
     def action_columns(self) -> tuple[tuple[str, int], ...]:
@@ -161,6 +211,12 @@ class Policy:
             for name in self.actions
             for limb in (range(len(self.limbs)) if ACTIONS[name].per_limb else (-1,))
         )
+
+    @property
+    def bends_axis(self) -> bool:
+        """Whether it may bend spine or tail: by its gait, its table or its network."""
+        names = {*self.parameters, *self.actions}
+        return not names.isdisjoint(AXIS_ACTIONS) or self.gait != self.gait.without("axis")
 
     @property
     def max_speed(self) -> float:
@@ -402,6 +458,7 @@ def action_mirror(policy: Policy) -> tuple[np.ndarray, np.ndarray]:
     return np.array(images, dtype=int), np.array([-1.0 if ACTIONS[name].is_odd else 1.0 for name, _ in columns])
 
 
+_DAMAGED = "{} is damaged, cut, or no .npz: its arrays cannot be read; take another copy, or train the policy again."
 _TEXTS = ("name", "task", "robot", "robot_digest")
 _ROWS = ("servos", "limbs", "parameters", "actions", "readings")
 _NUMBERS = ("length", "mass", "decision")
@@ -440,6 +497,8 @@ def policy_bytes(policy: Policy) -> bytes:
     }
     for i, layer in enumerate(policy.layers):
         arrays |= {f"weights_{i}": np.array(layer.weights, dtype=float), f"bias_{i}": np.array(layer.bias, dtype=float)}
+    for number, replicate in enumerate(policy.replicates):
+        arrays |= {f"{_REPLICATE}{number}_{name}": array for name, array in _replicate_arrays(replicate).items()}
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, array in arrays.items():
@@ -447,6 +506,18 @@ def policy_bytes(policy: Policy) -> bytes:
             np.lib.format.write_array(member, array, allow_pickle=False)
             archive.writestr(zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0)), member.getvalue())
     return content.getvalue()
+
+
+_REPLICATE = "replicate_"  # begins the names of the arrays of other seeds, followed by a number
+
+
+def _replicate_arrays(replicate: Replicate) -> dict[str, np.ndarray]:
+    """Return the arrays of the policy of another seed by name."""
+    arrays = {name: np.array(getattr(replicate, name), dtype=float) for name in ("speeds", "turns", "table")}
+    for i, layer in enumerate(replicate.layers):
+        arrays |= {f"weights_{i}": np.array(layer.weights, dtype=float), f"bias_{i}": np.array(layer.bias, dtype=float)}
+    record = np.array(replicate.training, dtype="U").reshape(-1, 2)
+    return {"seed": np.array(replicate.seed), **arrays, "training": record}
 
 
 def load_policy(path: str | Path) -> Policy:
@@ -490,13 +561,13 @@ def _arrays(path: Path, data: bytes) -> dict[str, np.ndarray]:
                 f"{path} holds Python objects, which are never unpickled, since they may run programs: give a file "
                 "that suchus train wrote."
             ) from error
-        raise UnreadableFile(f"{path} is damaged: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
     except UnreadableFile:
         raise
     except (zipfile.BadZipFile, OSError, EOFError, KeyError, NotImplementedError, zipfile.LargeZipFile) as error:
-        raise UnreadableFile(f"{path} is damaged or no .npz: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
     except Exception as error:  # zlib.error and whatever else damaged bytes raise
-        raise UnreadableFile(f"{path} is damaged: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(_DAMAGED.format(path)) from error
 
 
 def _parse(arrays: Mapping[str, np.ndarray], path: Path) -> Policy:
@@ -519,7 +590,6 @@ def _parse(arrays: Mapping[str, np.ndarray], path: Path) -> Policy:
                 f"{path} has format {int(arrays['format'])} of a policy; this version of suchus reads {FORMAT}: train "
                 "it again, or take the version of suchus that wrote it."
             )
-        count = sum(name.startswith("weights_") for name in arrays)
         values: dict[str, Any] = {name: str(arrays[name]) for name in _TEXTS}
         values |= {name: float(arrays[name]) for name in _NUMBERS}
         values |= {name: tuple(map(str, arrays[name].tolist())) for name in _ROWS}
@@ -529,18 +599,50 @@ def _parse(arrays: Mapping[str, np.ndarray], path: Path) -> Policy:
             table=_rows(_finite(arrays["table"])),
             gait=blueprint.parse_table(tomllib.loads(str(arrays["gait"])), Gait, f"the gait of {path.name}"),
             is_symmetric=bool(arrays["is_symmetric"]),
-            training=tuple((str(key), str(value)) for key, value in arrays["training"].tolist()),
-            layers=tuple(
-                Layer(_rows(_finite(arrays[f"weights_{i}"])), tuple(_finite(arrays[f"bias_{i}"]).tolist()))
-                for i in range(count)
-            ),
+            training=_record(arrays["training"]),
+            layers=_layers(arrays),
+            replicates=_replicates(arrays),
         )
     except UnreadableFile:
         raise
     except SuchusError as error:
         raise UnreadableFile(f"{path} is no policy: {error}") from error
     except (TypeError, ValueError, KeyError, IndexError) as error:
-        raise UnreadableFile(f"{path} is no policy: {str(error).rstrip('.')}.") from error
+        raise UnreadableFile(
+            f"{path} is no policy: its arrays have other shapes or kinds than those that suchus train writes; give "
+            "such a file."
+        ) from error
+
+
+def _record(rows: np.ndarray) -> tuple[tuple[str, str], ...]:
+    """Return the record of a training from an array of texts, shape (entry, 2)."""
+    return tuple((str(key), str(value)) for key, value in rows.tolist())
+
+
+def _layers(arrays: Mapping[str, np.ndarray], prefix: str = "") -> tuple[Layer, ...]:
+    """Return the layers of a network from the arrays whose names begin with a prefix."""
+    count = sum(name.startswith(f"{prefix}weights_") for name in arrays)
+    return tuple(
+        Layer(_rows(_finite(arrays[f"{prefix}weights_{i}"])), tuple(_finite(arrays[f"{prefix}bias_{i}"]).tolist()))
+        for i in range(count)
+    )
+
+
+def _replicates(arrays: Mapping[str, np.ndarray]) -> tuple[Replicate, ...]:
+    """Return the policies of other seeds that arrays describe."""
+    count = sum(name.startswith(_REPLICATE) and name.endswith("_seed") for name in arrays)
+    prefixes = [f"{_REPLICATE}{number}_" for number in range(count)]
+    return tuple(
+        Replicate(
+            seed=int(arrays[f"{prefix}seed"]),
+            speeds=tuple(_finite(arrays[f"{prefix}speeds"]).tolist()),
+            turns=tuple(_finite(arrays[f"{prefix}turns"]).tolist()),
+            table=_rows(_finite(arrays[f"{prefix}table"])),
+            layers=_layers(arrays, prefix),
+            training=_record(arrays[f"{prefix}training"]),
+        )
+        for prefix in prefixes
+    )
 
 
 def _finite(array: np.ndarray) -> np.ndarray:
@@ -558,9 +660,32 @@ def _rows(array: np.ndarray) -> Any:
 
 def with_training(policy: Policy, **entries: str) -> Policy:
     """Return a policy with further entries of its training record."""
-    values = {f.name: getattr(policy, f.name) for f in fields(policy)}
-    record = {**dict(policy.training), **entries}
-    return Policy(**(values | {"training": tuple(record.items())}))
+    return replace(policy, training=tuple({**dict(policy.training), **entries}.items()))
+
+
+def with_replicates(policy: Policy, others: Sequence[Policy], names: Sequence[str]) -> Policy:
+    """Return a policy that carries those of other seeds of the same training.
+
+    Args:
+        policy: the policy.
+        others: policies of other seeds, which differ in table, network and record alone.
+        names: entries of their records that are kept.
+    """
+    replicates = tuple(
+        Replicate(
+            seed=int(dict(other.training)["seed"]),
+            speeds=other.speeds,
+            turns=other.turns,
+            table=other.table,
+            layers=other.layers,
+            training=tuple((name, value) for name, value in other.training if name in names),
+        )
+        for other in others
+    )
+    actions, spans, readings = next(
+        ((each.actions, each.spans, each.readings) for each in (policy, *others) if each.layers), ((), (), ())
+    )
+    return replace(policy, replicates=replicates, actions=actions, spans=spans, readings=readings)
 
 
 def check_parameters(names: tuple[str, ...]) -> None:

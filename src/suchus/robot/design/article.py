@@ -208,8 +208,7 @@ def _driven_hinges(tail: Tail) -> list[Hinge]:
     limit = _SPARE * tail.bend_limit / tail.joints
     drive: Servo | Spring = tail.cable_servo
     if tail.drive != "servos":
-        armature = _cable(tail).turning.armature / tail.joints
-        drive = Spring(stiffness=tail.joint_stiffness, damping=tail.joint_damping, armature=armature)
+        drive = Spring(stiffness=tail.joint_stiffness, damping=tail.joint_damping, armature=_PASSIVE_ARMATURE)
     return [Hinge(name=name, turn="yaw", range=(-limit, limit), drive=drive) for name in cable_names(tail)]
 
 

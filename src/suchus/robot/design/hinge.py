@@ -81,9 +81,10 @@ class Servo:
     def from_motor(motor: Motor, volts: float | None = None, *, template: Optional["Servo"] = None) -> "Servo":
         """Return a servo that is bought, at a supply.
 
-        Torque, speed and winding are those of the motor. Data sheets do not give the gains of the loop and the friction
-        of the gear. These are taken from another servo, or, without one, from the servos of the article's robot in
-        proportion to the torque. ``suchus calibrate`` measures them.
+        Torque, speed and winding are those of the motor. Data sheets give no rotor inertia, no friction of the gear
+        and no gains that suit a robot. These are taken from another servo, or, without one, in proportion to the
+        torque: inertia and friction as the identified servos have them on average, gains as the article's robot has
+        them. ``suchus calibrate`` measures them.
 
         Args:
             motor: as it is bought.
@@ -106,16 +107,19 @@ class Servo:
             integral_limit=0.0,
             torque=torque,
             speed=speed,
-            armature=_INERTIA * torque,
-            friction=_FRICTION * torque,
-            damping=_DAMPING * torque,
+            armature=_INERTIA * motor.stall_torque,
+            friction=_FRICTION * motor.stall_torque,
+            damping=_DAMPING * motor.stall_torque,
             winding=winding,
         )
 
 
 _MOST_IDLE = 0.9  # of the torque; beyond, the motor's own line would be that of a motor ten times as fast
-_STIFFNESS, _LEAD = 40.0 / 3.0, 0.6 / 40.0  # gains over torque [1/rad] and [s], as the legs of the article's robot have
-_INERTIA, _FRICTION, _DAMPING = 0.005 / 3.0, 0.01, 0.05 / 3.0  # of rotor and gear over torque [s2], [-], [s/rad]
+_STIFFNESS = 40.0 / 3.0  # stiffness over torque [1/rad]
+_LEAD = 1.5 / 40.0  # derivative gain over stiffness [s]: critical damping of rotor and leg of the article's robot
+_INERTIA, _FRICTION, _DAMPING = 3.05e-3, 1.52e-2, 5.4e-3
+"""Rotor inertia [s2], dry friction [-] and damping [s/rad] of a gear over its torque at standstill: geometric means
+over the identified servos (``suchus.robot.motors.servo_parameters.estimated_parameters``)."""
 
 Turn = Literal["yaw", "pitch", "roll"]
 """What a hinge does.

@@ -3,26 +3,14 @@
 A number without a source beside it is chosen: ``chosen`` says why, and how far it could be off.
 """
 
+from dataclasses import replace
 from math import pi, radians
 
 from suchus.robot.design import Assumption, Contact, Head, Leg, Pelvis, Servo, Spine, Tables, Tail, Thorax, crocodile
 from suchus.robot.design.tables import TIBIA_RADIUS_RATIO
 from suchus.robot.motors import motor
 
-_servo = Servo.from_motor(
-    motor("STS3250"),
-    template=Servo(
-        kp=40.0,
-        ki=0.0,
-        kd=0.6,
-        integral_limit=0.5,
-        torque=4.9,
-        speed=7.0,
-        armature=0.005,
-        friction=0.03,
-        damping=0.05,
-    ),
-)
+_servo = replace(Servo.from_motor(motor("STS3250")), kp=40.0, kd=1.5, integral_limit=0.5)
 
 _hind_leg = Leg(
     hip_offset=0.070,  # Table I, a0
@@ -96,7 +84,8 @@ tables = Tables(
 robot = crocodile(tables)
 """The article's robot."""
 
-_PID = "1 to 2 degrees of static droop in stance, damping close to critical; integral action would wind up in stance"
+_PID = "1 to 2 degrees of droop in stance, critical damping of rotor and leg; integral action would wind up in stance"
+_RULE = "torque at standstill times the mean ratio of the identified servos, times or over a standard deviation of"
 _SERVO_CHOICE = "from an STS3215 for 12 V on three empty cells to an STS3250 on three full ones"
 _CASE = "room for a hobby servo's case, and a belly that clears the ground in the crawl"
 _FORE_LEG = "the article gives the hind leg only; crocodilians' fore legs are 0.8 to 0.9 as long"
@@ -118,11 +107,11 @@ def _servo_rows(path: str, demand: str) -> tuple[_Row, ...]:
         (f"{path}.speed", 3.9, 8.3, f"{_SERVO_CHOICE}, which turn slower by the same share"),
         (f"{path}.kp", 20.0, 80.0, _PID),
         (f"{path}.ki", 0.0, 20.0, _PID),
-        (f"{path}.kd", 0.3, 1.2, _PID),
+        (f"{path}.kd", 0.75, 3.0, _PID),
         (f"{path}.integral_limit", 0.1, 1.0, "unused while ki is zero"),
-        (f"{path}.armature", 0.002, 0.01, "rotor inertia times the square of a 250:1 gear of that class"),
-        (f"{path}.friction", 0.01, 0.1, "about 1 % of the torque at standstill"),
-        (f"{path}.damping", 0.01, 0.1, "a gear of that class, driven backward"),
+        (f"{path}.armature", 0.0065, 0.034, f"{_RULE} 2.3"),
+        (f"{path}.friction", 0.048, 0.116, f"{_RULE} 1.6"),
+        (f"{path}.damping", 0.011, 0.062, f"{_RULE} 2.3"),
     )
 
 

@@ -5,6 +5,12 @@ water answers its rate of change with a force -(A dw/dt + omega x p) and the cou
 to the accelerations goes into the mass matrix, the rest to the passive forces. Lighthill's momentum is shed at the
 tail's end: -u p' + (p' . w) t / 2, where the water passes towards the tail (u > 0).
 
+The kinetic energy of the added mass is T = f w . A w / 2, where f is the fraction under water. Where f changes,
+Lagrange's equations give, beside the terms of constant f, the force -f' A w, f' being the rate of f, and the gradient
+of T. Both follow from the surface's cut: f falls by S / V for each metre by which the middle of the cut rises. A splash
+takes a fraction of what f' moves: with all of it, a body that enters keeps momentum, not energy (von Karman 1929), and
+a body that leaves gets nothing back.
+
 Some pieces at a time are taken together, quantity by quantity below each other (``lanes``), so that the compiler
 handles several with one instruction. It does only where a loop has neither branches nor calls of a library: what needs
 them stands in loops of its own, and what holds for some pieces only is multiplied by zero for the others.
@@ -344,3 +350,59 @@ def added_mass(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> N
         )
         write_lane(rows, lanes.LINEAR_INERTIA, n, (tensor[0][0], tensor[1][0], tensor[1][1]))
         write_lane(rows, lanes.LINEAR_INERTIA + 3, n, (tensor[2][0], tensor[2][1], tensor[2][2]))
+
+
+@compile_inline
+def change_added_mass(
+    cut: float, up_axis: Vector, cut_velocity: Vector, twice_energy: float, splash: float
+) -> tuple[float, Vector]:
+    """Return the rate of the fraction under water with what a splash loses [1/s], and the force on the cut [N].
+
+    The rate times the added mass is a resistance to the motion of the piece. The force acts at the middle of the cut.
+
+    Args:
+        cut: area of the cut over the volume of the piece: by how much the fraction falls for each metre of rise [1/m].
+        up_axis: unit normal of the surface.
+        cut_velocity: velocity against the water of the point of the piece that is at the middle of the cut [m/s].
+        twice_energy: twice the kinetic energy of the piece's added mass, if it were all under water [J].
+        splash: fraction of what the change of added mass moves that is lost [-].
+    """
+    rate = -cut * dot(up_axis, cut_velocity)
+    return rate + 0.5 * splash * abs(rate), times(-0.5 * cut * twice_energy, up_axis)
+
+
+@compile_inline
+def _emerged_per_rise(kind: float, depth: float) -> float:
+    """Return how the share of a unit shape under a plane changes with its depth, see ``immersed``."""
+    d = min(max(depth, -1.0), 1.0)
+    chord_squared = 1.0 - d * d
+    slab = 0.5 if abs(depth) < 1.0 else 0.0
+    return 2.0 / pi * sqrt(chord_squared) if kind == DISC else (0.75 * chord_squared if kind == BALL else slab)
+
+
+@compile_inline
+def cross_surface(table: np.ndarray, rows: np.ndarray, water: WaterProperties) -> None:
+    """Add the force of the change of added mass to each piece that crosses the surface.
+
+    The depth of a piece is that of its centre over its half extent against gravity, and that extent turns with the
+    piece: so the middle of the cut lies at the depth times the point highest up.
+
+    Args:
+        table: table of the pieces, shape (column, lane).
+        rows: quantities of the pieces, see ``lanes``; written after ``added_mass``.
+        water: its properties.
+    """
+    scale = water.density * water.added_mass_factor
+    for n in range(LANES):
+        depth, arm = rows[lanes.DEPTH, n], lane(rows, lanes.ARM, n)
+        cut = _emerged_per_rise(table[lanes.KIND, n], depth) / dot(water.up_axis, arm)
+        lever, r, omega = times(depth, arm), lane(rows, lanes.LEVER, n), lane(rows, lanes.MOVING, n)
+        w, m = lane(rows, lanes.SPEED, n), times(scale, lane(table, lanes.ADDED_MASS, n))
+        momentum = m[0] * w[0], m[1] * w[1], m[2] * w[2]
+        cut_velocity = plus(lane(rows, lanes.AGAINST, n), cross(omega, lever))
+        rate, push = change_added_mass(cut, water.up_axis, cut_velocity, dot(momentum, w), water.splash)
+        a, b, t = lane(rows, lanes.E_A, n), lane(rows, lanes.E_B, n), lane(rows, lanes.E_T, n)
+        force = plus(push, times(-rate, blend(momentum[0], a, momentum[1], b, momentum[2], t)))
+        torque = plus(cross(lever, push), cross(r, force))
+        write_lane(rows, lanes.FORCE, n, plus(lane(rows, lanes.FORCE, n), force))
+        write_lane(rows, lanes.FORCE - 3, n, plus(lane(rows, lanes.FORCE - 3, n), torque))

@@ -1,11 +1,8 @@
 """What the water does to shapes of any size: the exact part under water, drag, lift, and the change of added mass.
 
 A shape is a geom of any model. The surface over a shape is the plane through the waves at six points of it. The kinetic
-energy of the added mass is T = f (w . A w + omega . J omega) / 2, where f is the fraction under water. Where f changes,
-Lagrange's equations give, beside the terms of constant f, the force -f' (A w, J omega), f' being the rate of f, and the
-gradient of T. Both follow from the cut: f falls by S / V for each metre by which the middle of the cut rises. A splash
-takes a fraction of what f' moves: with all of it, a body that enters keeps momentum, not energy (von Karman 1929), and
-a body that leaves gets nothing back.
+energy of the added mass is T = f (w . A w + omega . J omega) / 2, where f is the fraction under water. What follows
+where f changes is said by ``forces.change_added_mass``.
 """
 
 from math import cos, exp, sin, sqrt
@@ -23,7 +20,7 @@ from suchus.core.water_table import (
     SHEAR,
 )
 from suchus.sim.hydro import lanes
-from suchus.sim.hydro.forces import immersed
+from suchus.sim.hydro.forces import change_added_mass, immersed
 from suchus.sim.hydro.lanes import WaterProperties
 from suchus.sim.hydro.shapes import Immersion, capsule, cylinder, polyhedron
 from suchus.sim.hydro.vectors import (
@@ -372,7 +369,7 @@ def float_up(rows: np.ndarray, water: WaterProperties, count: int) -> None:
 
 
 @compile_inline
-def resist(table: np.ndarray, rows: np.ndarray, water: WaterProperties, splash: float, step: float, count: int) -> None:
+def resist(table: np.ndarray, rows: np.ndarray, water: WaterProperties, step: float, count: int) -> None:
     """Add drag and lift, the rotational part of the added mass, and the forces of its change, to each shape.
 
     Resistances are taken at the velocity at the end of a step: what they change of it within the step is added to the
@@ -382,7 +379,6 @@ def resist(table: np.ndarray, rows: np.ndarray, water: WaterProperties, splash: 
         table: table of the shapes, shape (column, lane).
         rows: quantities of the shapes, see ``lanes``; written after ``added_mass``.
         water: its properties.
-        splash: fraction of what the change of added mass moves that is lost [-].
         step: time step of an implicit step, 0 to take resistances as they are [s].
         count: number of shapes in the table [-].
     """
@@ -422,12 +418,11 @@ def resist(table: np.ndarray, rows: np.ndarray, water: WaterProperties, splash: 
         cut, zero = rows[lanes.CUT, n], (0.0, 0.0, 0.0)
         if cut > 0.0 and scale > 0.0:
             up, lever = lane(rows, lanes.NORMAL, n), lane(rows, lanes.CUT_OFFSET, n)
-            rate = -cut * dot(up, plus(v, cross(omega, lever)))
             m = times(scale, lane(table, lanes.ADDED_MASS, n))
             twice = m[0] * w[0] * w[0] + m[1] * w[1] * w[1] + m[2] * w[2] * w[2]
             twice += j[0] * spin[0] * spin[0] + j[1] * spin[1] * spin[1] + j[2] * spin[2] * spin[2]
-            _load(rows, n, times(-0.5 * cut * twice, up), plus(r, lever), zero)
-            lost = rate + 0.5 * splash * abs(rate)
+            lost, push = change_added_mass(cut, up, plus(v, cross(omega, lever)), twice, water.splash)
+            _load(rows, n, push, plus(r, lever), zero)
             drag = plus(drag, times(lost, m))
             brake = plus(brake, times(lost, j))
         force = blend(-drag[0] * w[0], a, -drag[1] * w[1], b, -drag[2] * w[2], t)

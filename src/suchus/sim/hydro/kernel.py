@@ -24,7 +24,6 @@ from suchus.core.water_table import (
     SHAPE_HEADER,
     SHAPE_MAGIC,
     SHAPE_WIDTH,
-    SPLASH,
     SUBMERGED_VOLUME,
     TRIANGLE_COUNT,
     USERDATA_START,
@@ -34,7 +33,7 @@ from suchus.core.water_table import (
     WIDTH,
 )
 from suchus.sim.hydro import lanes, memory
-from suchus.sim.hydro.forces import added_mass, flow, meet, place, press, rub
+from suchus.sim.hydro.forces import added_mass, cross_surface, flow, meet, place, press, rub
 from suchus.sim.hydro.geoms import float_up, immerse, resist, scheduled, stir
 from suchus.sim.hydro.lanes import (
     COUPLING_INERTIA,
@@ -173,7 +172,7 @@ def _apply_to_shapes(model: int, data: int, offsets: np.ndarray, numbers: np.nda
         immerse(block_table, rows, water, triangles, used)
         float_up(rows, water, used)
         added_mass(block_table, rows, water)
-        resist(block_table, rows, water, header[SPLASH], step, used)
+        resist(block_table, rows, water, step, used)
         for n in range(used):
             if rows[lanes.WET_FRACTION, n] > 0.0:
                 wet_volume += rows[lanes.WET_VOLUME, n]
@@ -291,6 +290,7 @@ def _gathered(table: np.ndarray, count: int, water: WaterProperties, bodies: Bod
         rub(rows, water)
         press(block_table, rows, water)
         added_mass(block_table, rows, water)
+        cross_surface(block_table, rows, water)
         for n in range(min(LANES, count - block * LANES)):
             if rows[lanes.WET_FRACTION, n] > 0.0:
                 wet_volume += rows[lanes.WET_VOLUME, n]

@@ -105,6 +105,8 @@ class WaterProperties(NamedTuple):
     """Factor on added mass [-]."""
     shedding: float
     """Factor on what is shed at the tail [-]."""
+    splash: float
+    """Fraction of what the change of added mass at the surface moves that is lost [-]."""
     up_axis: Vector
     """Unit vector against gravity."""
     gravity: float

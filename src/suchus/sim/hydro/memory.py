@@ -20,6 +20,7 @@ from suchus.core.water_table import (
     NUMBERS,
     SHAPE_MAGIC,
     SHEDDING,
+    SPLASH,
     THICKENING,
     VISCOSITY,
 )
@@ -220,5 +221,5 @@ def read_water(model: int, user: np.ndarray, offsets: np.ndarray, length: float)
     up_axis = times(-1.0 / gravity, down) if gravity > 0.0 else (0.0, 0.0, 1.0)
     return WaterProperties(
         user[LEVEL], user[DENSITY], (user[AIR_FRACTION], user[AIR_FRACTION + 1]), user[VISCOSITY], user[CROSS_DRAG],
-        user[THICKENING], user[ADDED_MASS_FACTOR], user[SHEDDING], up_axis, gravity, length,
+        user[THICKENING], user[ADDED_MASS_FACTOR], user[SHEDDING], user[SPLASH], up_axis, gravity, length,
     )  # fmt: skip

@@ -255,10 +255,10 @@ def _numbers(
     water = np.zeros(NUMBERS)
     water[water_table.DENSITY], water[water_table.VISCOSITY] = medium.density, medium.viscosity / medium.density
     water[water_table.AIR_FRACTION : water_table.AIR_FRACTION + 2] = 1.0
-    water[water_table.ADDED_MASS_FACTOR] = medium.added_mass
+    water[water_table.ADDED_MASS_FACTOR], water[water_table.SPLASH] = medium.added_mass, medium.splash
     velocity, shear = (pair[0] * forward + pair[1] * leftward for pair in (current.velocity, current.shear))
     water[water_table.CURRENT : water_table.CURRENT + 3] = velocity
-    header = {water_table.USERDATA_START: start, water_table.BODY_COUNT: bodies, water_table.SPLASH: medium.splash}
+    header: dict[int, float] = {water_table.USERDATA_START: start, water_table.BODY_COUNT: bodies}
     header |= {water_table.SHEAR + i: float(shear[i]) for i in range(3)}
     schedules = _rows(medium.level), _rows(current.factor)
     waves = wave_rows(medium.waves, up_axis, float(np.linalg.norm(medium.gravity)))

@@ -2,12 +2,13 @@
 
 import copy
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 from jaxtyping import Float
-from mujoco.batch import Batch, SimulationError
+from mujoco.batch import MODEL_FIELDS, Batch, SimulationError
 
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
@@ -20,7 +21,7 @@ from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.clear import check_clear
 from suchus.sim.land.corrected import correct
 from suchus.sim.land.lake import Waters, gravity, up_direction
-from suchus.sim.land.meter import Meter, ServoLaws, servo_effort
+from suchus.sim.land.meter import ABSOLUTE_POWER, Meter, ServoLaws, servo_effort
 from suchus.sim.land.run import Afloat, Run
 from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
 from suchus.sim.model.wet import wet_model
@@ -30,6 +31,7 @@ _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physi
 FAST_ITERATIONS = 10
 """Iterations of the contact solver in fast physics [-]."""
 _SERVO_FIELDS = ("actuator_gainprm", "actuator_biasprm", "actuator_forcerange")
+_ARRAY_FIELDS = tuple(sorted(name for name in MODEL_FIELDS if not name.startswith("opt.")))
 _CURRENT = int(mujoco.mjtStage.mjSTAGE_VEL)  # after a step, positions and velocities describe the new state
 
 
@@ -83,6 +85,9 @@ class SimulationBatch:
         self.laws = ServoLaws(shared, self._robots)
         """The numbers by which the torques of the servos follow."""
         self._rewired: set[int] = set(range(len(runs)))
+        self._compile = partial(_model, timestep=timestep, max_pieces=max_pieces, is_solved=is_solved, fast=fast)
+        self._picture_data: Any = None
+        self._body_fields: set[str] = set()  # fields in which robots that were put in differ from the first
         self._lay_ground(runs)
         if self._models:
             self.physics.set_models(self._models)
@@ -130,6 +135,24 @@ class SimulationBatch:
         for attribute in name.split("."):
             owner = getattr(owner, attribute)
         return np.asarray(owner)
+
+    def exchange(self, sim: int, run: Run) -> None:
+        """Give a run a robot of other masses and a ground of another slope and friction; ``restart`` it after this.
+
+        Args:
+            sim: the run.
+            run: run whose robot and ground it gets; its relief is not looked at.
+        """
+        correction = None if run.lake is None else run.lake.correction
+        model = self._compile((run.robot, run.ground.relief, correction))
+        self._body_fields |= {name for name in _ARRAY_FIELDS if not _are_equal(self.model, model, name)}
+        for name in sorted(self._body_fields):
+            self.field(name, sim)[:] = getattr(model, name)
+        self.field("geom_friction", sim)[:] = model.geom_friction
+        self.field("geom_friction", sim)[1:, 0] *= run.ground.friction_scale
+        self.tilt(sim, run.ground)
+        self._robots[sim] = run.robot
+        self.commit()
 
     def commit(self) -> None:
         """Let the physics know of written model fields, and the meters of changed servos."""
@@ -316,6 +339,20 @@ class SimulationBatch:
             "effort": self.effort,
         }
 
+    def body_poses(self, sim: int, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions [m] and unit quaternions wxyz of some bodies of a run, shapes (body, 3) and (body, 4).
+
+        Args:
+            sim: the run.
+            names: names of the bodies.
+        """
+        data = mujoco.MjData(self.model) if self._picture_data is None else self._picture_data
+        self._picture_data = data
+        data.qpos[:] = self.qpos[sim]
+        mujoco.mj_kinematics(self.model, data)
+        rows = [self.model.body(name).id for name in names]
+        return np.array(data.xpos[rows]), np.array(data.xquat[rows])
+
     def restart(self, sim: int, begin: Beginning) -> None:
         """Put one robot into a state, without pushes, also after it has diverged; the injector handles its faults.
 
@@ -345,6 +382,7 @@ class SimulationBatch:
         need_forces: bool = True,
         need_readings: bool = True,
         need_effort: bool = True,
+        only_power: bool = False,
     ) -> None:
         """Command servo angles and advance the runs that are alive by some physics steps.
 
@@ -363,6 +401,7 @@ class SimulationBatch:
             need_readings: whether ``readings`` are needed; if not, they stay as they were, and a step takes a ninth
                 less time.
             need_effort: whether ``effort`` is needed; if not, it stays as it was. It needs the sensors in each step.
+            only_power: whether of ``effort`` the size of the power alone is needed; the rest stays as it was.
         """
         # what all runs share is done at once: with one run alone each of these lines shows in its time
         going = self._going(selection)
@@ -385,14 +424,63 @@ class SimulationBatch:
             if meter is not None:
                 meter.record_step(call)
         if meter is not None:
-            meter.finish(self.period_means, self.effort, slice(None) if selection is None else selection)
+            chosen = slice(None) if selection is None else selection
+            meter.finish(self.period_means, self.effort, chosen, only_power=only_power)
         self.readings[:], self._shafts[:] = self.sensors, self._lengths
         np.divide(self._sum, calls, out=self._mean)
         np.abs(self.qvel, out=self._speeds)
         if not self._speeds.max() < _TOO_FAST:  # a NaN is not below anything
-            fastest = self._speeds.max(axis=1)
-            for sim in np.flatnonzero(self._living(selection) & ~(fastest < _TOO_FAST)):
-                self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+            self._end_fast_runs(selection, time)
+
+    def advance_periods(
+        self, targets: Float[np.ndarray, "period run servo"], steps: int, times: Sequence[float], selection: np.ndarray
+    ) -> Float[np.ndarray, "period run"]:
+        """Advance runs on dry land by some control periods, and return the power of their servos in each [W].
+
+        The states, ``readings`` and powers are those of as many calls of ``advance``, in less time. Powers are sums of
+        their sizes over the servos.
+
+        Args:
+            targets: commanded servo angles in each period [rad].
+            steps: number of physics steps in a period.
+            times: time at which each period begins [s].
+            selection: whether each run is advanced, shape (run,).
+        """
+        periods = len(targets)
+        meter = self._meter(periods * steps)
+        self._sense(True)
+        self._sum.fill(0.0)
+        going, is_all = self._going(selection), bool(self.alive.all())
+        for period, time in enumerate(times):
+            if is_all:
+                self.ctrl[:] = targets[period]
+            else:
+                self.ctrl[self.alive] = targets[period][self.alive]
+            for step in range(steps):
+                try:
+                    self.physics.step(going, 1, _CURRENT)
+                except SimulationError as error:
+                    for sim in error.ids:
+                        self._end(int(sim), time, self.physics.error(int(sim)))
+                    going, is_all = self._going(selection), False
+                meter.record_step(period * steps + step)
+                if period == periods - 1:
+                    self._sum += self._live_forces
+            if not np.vdot(self.qvel, self.qvel) < _TOO_FAST**2:  # cheaper than the greatest speed, and not below it
+                self._end_fast_runs(selection, time)
+                going, is_all = self._going(selection), bool(self.alive.all())
+        powers = meter.powers(periods)
+        self.effort[selection, :, ABSOLUTE_POWER] = powers[-1][selection]
+        self.readings[:], self._shafts[:] = self.sensors, self._lengths
+        np.divide(self._sum, steps, out=self._mean)
+        return np.asarray(powers.sum(axis=2))
+
+    def _end_fast_runs(self, selection: np.ndarray | None, time: float) -> None:
+        """Stop the runs that move faster than anything on a robot does."""
+        np.abs(self.qvel, out=self._speeds)
+        fastest = self._speeds.max(axis=1)
+        for sim in np.flatnonzero(self._living(selection) & ~(fastest < _TOO_FAST)):
+            self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
 
     def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
         """Copy the states, readings and failures of some runs to others.
@@ -442,6 +530,11 @@ class SimulationBatch:
     def _end(self, sim: int, time: float, cause: str) -> None:
         if self.alive[sim]:
             self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
+
+
+def _are_equal(first: Any, second: Any, name: str) -> bool:
+    """Return whether a field of two models has the same numbers."""
+    return np.array_equal(getattr(first, name), getattr(second, name))
 
 
 def _model(

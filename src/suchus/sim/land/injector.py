@@ -55,6 +55,11 @@ class Injector:
             fault.mend(site)
         self._batch.commit()
 
+    @property
+    def is_broken(self) -> bool:
+        """Whether anything is broken in any run."""
+        return bool(self._broken)
+
     def broken(self, sim: int) -> tuple[Fault, ...]:
         """Return the faults that a run has now, in the order in which they began."""
         return tuple(fault for (owner, _), (fault, _) in self._broken.items() if owner == sim)
@@ -224,6 +229,25 @@ class Disturbances:
         for sim, run in enumerate(runs):
             self.schedule(sim, run.faults, run.pushes)
 
+    def set_errors(self, sim: int, zero_error: Sequence[float], play: Sequence[float]) -> None:
+        """Replace the errors of a run's servos, and mend what is broken.
+
+        Args:
+            sim: the run.
+            zero_error: error of the zero of each servo; empty for none [rad].
+            play: play of each servo, whole width; empty for none [rad].
+        """
+        self.injector.mend(sim)
+        servos = self._reached_angles.shape[1]
+        if sim not in self._inexact_sims:
+            self._inexact_sims.append(sim)
+            self._zero_error = np.vstack([self._zero_error.reshape(-1, servos), np.zeros(servos)])
+            self._half_play = np.vstack([self._half_play.reshape(-1, servos), np.zeros(servos)])
+        row = self._inexact_sims.index(sim)
+        self._zero_error[row] = np.array(zero_error) if len(zero_error) else 0.0
+        self._half_play[row] = np.array(play) / 2 if len(play) else 0.0
+        self._reached_angles[sim] = np.nan
+
     def schedule(self, sim: int, faults: Sequence[Fault], pushes: Sequence[Push]) -> None:
         """Replace the future faults and pushes of a run, whose clock is at 0; faults that act already are repaired.
 
@@ -279,6 +303,18 @@ class Disturbances:
         """Add a push to the future ones of a run."""
         self._pushes[sim].append(push)
         self._update_next_tick(sim, -1)
+
+    def is_eventless(self, clocks: np.ndarray, going: np.ndarray, periods: int) -> bool:
+        """Return whether nothing is broken, and no fault or push is due in the next control periods.
+
+        Args:
+            clocks: number of the control period of each run since it began, shape (run,).
+            going: whether each run goes on, shape (run,).
+            periods: number of the control periods.
+        """
+        if self.injector.is_broken:
+            return False
+        return not (self._has_pending and bool(((self._next_ticks < clocks + periods) & going).any()))
 
     def happen(self, clocks: np.ndarray, going: np.ndarray) -> None:
         """Let the faults of this control period begin, and push.

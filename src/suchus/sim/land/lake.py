@@ -45,6 +45,9 @@ class Lake:
     """Factor on the added mass of all pieces [-]."""
     shedding: float = 1.0
     """Factor on the momentum that is shed at the end of the tail [-]."""
+    splash: float = 1.0
+    """Fraction of what the change of added mass moves that is lost at the surface [-]: with 0 body and water keep
+    their energy, with 1 a body that enters keeps its momentum (von Karman 1929)."""
     correction: SectionCorrection | None = None
     """Factors on what each link's sections feel, as a flow found them at one Reynolds number; None leaves all as they
     are. ``coupling.earned_correction`` makes one."""
@@ -56,6 +59,7 @@ class Lake:
             check.number("heel", -pi, pi, "rad")
             check.number("added_mass", 0.0, 10.0, "")
             check.number("shedding", 0.0, 10.0, "")
+            check.number("splash", 0.0, 1.0, "")
             check.course("level", -DEEPEST, DEEPEST, "m")
             check.course("air_fraction", 0.0, 1.0, "")
 
@@ -83,6 +87,7 @@ class Lake:
         row[hydro.DENSITY], row[hydro.VISCOSITY] = self.water.density, self.water.viscosity
         row[hydro.CROSS_DRAG], row[hydro.THICKENING] = self.water.cross_drag, self.water.thickening
         row[hydro.ADDED_MASS_FACTOR], row[hydro.SHEDDING] = self.added_mass, self.shedding
+        row[hydro.SPLASH] = self.splash
         forward, leftward = level_axes(up_axis)
         row[hydro.CURRENT : hydro.CURRENT + 3] = self.current[0] * forward + self.current[1] * leftward
         if self.wave is not None:

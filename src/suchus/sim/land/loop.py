@@ -168,6 +168,7 @@ class Loop:
         need_forces: bool = True,
         need_readings: bool = True,
         need_effort: bool = True,
+        only_power: bool = False,
         late_command: tuple[np.ndarray, int] | None = None,
     ) -> None:
         """Let one control period pass in which the servos do as they are commanded.
@@ -176,6 +177,7 @@ class Loop:
             need_forces: whether contact forces will be read after it, see ``SimulationBatch.advance``.
             need_readings: whether any sensor will be.
             need_effort: whether the effort of the servos will be.
+            only_power: whether of the effort the size of the power alone will be.
             late_command: servo angles that still act at the beginning, shape (run, servo) [rad], and for how many
                 physics steps, fewer than the period has, where a command arrives late; of a loop of one run.
         """
@@ -184,7 +186,11 @@ class Loop:
             return
         targets, _, air_fraction = self.command
         advance = partial(
-            self.batch.advance, need_forces=need_forces, need_readings=need_readings, need_effort=need_effort
+            self.batch.advance,
+            need_forces=need_forces,
+            need_readings=need_readings,
+            need_effort=need_effort,
+            only_power=only_power,
         )
         shared = self._deduplication
         shared.separate(self.tick, targets if air_fraction is None else np.column_stack([targets, air_fraction]))
@@ -209,6 +215,33 @@ class Loop:
         self.batch.effort[:] = joint_effort([early_effort, self.batch.effort], [early_fraction, 1.0 - early_fraction])
         self._count()
 
+    def advance_many(self, periods: int) -> Float[np.ndarray, "period run"] | None:
+        """Let the controller decide and the physics go on for some control periods, and return the servos' powers [W].
+
+        Results are those of as many ``decide`` and ``advance``, in less time, for a controller that senses nothing.
+
+        Args:
+            periods: number of control periods.
+
+        Returns:
+            Sums of the sizes of the powers of all servos of each run in each period; None where faults, pushes, water
+            or equal runs need each control period for itself, and nothing was done.
+        """
+        shared, disturbances = self._deduplication, self.disturbances
+        is_simple = not (self.feels or self.batch.waters or shared.followers.size or shared.has_groups)
+        if not is_simple or not disturbances.is_eventless(self.clocks, self._going, periods):
+            return None
+        commands, times, clocks = [], [], self.clocks.copy()
+        for period in range(periods):
+            self._intended_command = self.controller.command(self.tick + period, None)
+            commands.append(disturbances.disturb(clocks, self.tick + period, self._intended_command.targets))
+            times.append((self.tick + period) * self.period)
+            clocks += self._going
+        self.command = self._intended_command._replace(targets=commands[-1])
+        powers = self.batch.advance_periods(np.array(commands), self.steps, times, self._going)
+        self.skip(periods)
+        return powers
+
     def skip(self, periods: int) -> None:
         """Advance the clocks by some control periods, in which other code moves the robots."""
         for _ in range(periods):
@@ -221,6 +254,16 @@ class Loop:
     def choose(self, going: Bool[np.ndarray, " run"]) -> None:
         """Choose which runs go on from now, whether or not they have diverged; the others wait."""
         self._going[:] = self.batch.alive[:] = going
+
+    def exchange(self, sim: int, run: Run) -> None:
+        """Give a run another robot of the same design and another ground; ``restart`` it after this.
+
+        Args:
+            sim: the run.
+            run: run whose masses, errors of servos, slope and friction it gets.
+        """
+        self.disturbances.set_errors(sim, run.zero_error, run.play)
+        self.batch.exchange(sim, run)
 
     def restart(self, sim: int, begin: Beginning, faults: Sequence[Fault] = (), pushes: Sequence[Push] = ()) -> None:
         """Let one run begin anew; the others go on.
@@ -301,6 +344,11 @@ class Deduplication:
             remaining_groups = [[member for member in members if member != sim] for members in self._groups]
             self._groups = [members for members in remaining_groups if len(members) > 1]
             self._number()
+
+    @property
+    def has_groups(self) -> bool:
+        """Whether some runs have been identical so far."""
+        return bool(self._groups)
 
     def _number(self) -> None:
         """Select the first run of each group as its leader, and note the leader of each other run."""

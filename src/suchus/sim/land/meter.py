@@ -98,7 +98,7 @@ class Meter:
     ) -> None:
         """Reserve arrays for the readings of one control period."""
         first_sensor, last_sensor = min(velocities.start, torques.start), max(velocities.stop, torques.stop)
-        self._columns = slice(first_sensor, last_sensor)
+        self._columns, self._steps = slice(first_sensor, last_sensor), steps
         self._is_wet, self._laws = bool(water.shape[1]), laws
         self._acts, self._sensors = water[:, hydro.FORCE : hydro.FORCE + 4], sensors[:, self._columns]
         self._did, self._history = np.zeros((steps, *self._acts.shape)), np.zeros((steps + 1, *self._sensors.shape))
@@ -119,21 +119,59 @@ class Meter:
         self._did[step] = self._acts
         self._history[step + 1] = self._sensors
 
-    def finish(self, water: np.ndarray, effort: np.ndarray, selection: Bool[np.ndarray, " run"] | slice) -> None:
+    def powers(self, periods: int) -> Float[np.ndarray, "period run servo"]:
+        """Return the mean size of the power of each servo in each of some equal parts of the steps [W].
+
+        Args:
+            periods: number of parts.
+        """
+        power = self._speeds[:-1] + self._speeds[1:]
+        power *= applied_torque(self._torque, self._speeds[:-1], self._speeds[1:], self._laws)
+        power *= 0.5
+        np.abs(power, out=power)
+        steps = self._steps // periods
+        means: np.ndarray = np.add.reduce(power.reshape(periods, steps, *power.shape[1:]), axis=1)
+        means *= 1.0 / steps
+        return means
+
+    def finish(
+        self,
+        water: np.ndarray,
+        effort: np.ndarray,
+        selection: Bool[np.ndarray, " run"] | slice,
+        *,
+        only_power: bool = False,
+    ) -> None:
         """Write what the water and the servos did in the control period.
 
         Args:
             water: means of force and power of the water, shape (run, 4) [N, W]; written.
             effort: effort of each servo, shape (run, servo, 6), in the order of ``record.EFFORT``; written.
             selection: runs for which they are written.
+            only_power: whether the size of the power alone is written.
         """
         if self._is_wet:
             water[selection] = self._did.mean(axis=0)[selection]
+        if only_power:
+            effort[selection, :, ABSOLUTE_POWER] = self.powers(1)[0][selection]
+            return
         values = servo_effort(self._torque, self._speeds[:-1], self._speeds[1:], self._laws)
         if isinstance(selection, slice):
             effort[:] = values
         else:
             effort[selection] = values[selection]
+
+
+def applied_torque(
+    torque: Float[np.ndarray, "step run servo"],
+    start_speed: Float[np.ndarray, "step run servo"],
+    end_speed: Float[np.ndarray, "step run servo"],
+    laws: ServoLaws,
+) -> Float[np.ndarray, "step run servo"]:
+    """Return the torque that MuJoCo's implicit steps apply; the arguments are those of ``servo_effort`` [N m]."""
+    applied = (end_speed - start_speed) * laws.damping
+    applied *= np.abs(torque) < laws.limit  # a torque at its limit stays there
+    return np.asarray(np.subtract(torque, applied, out=applied))
 
 
 def servo_effort(
@@ -159,9 +197,7 @@ def servo_effort(
         means *= step_weight
         return means
 
-    applied = (end_speed - start_speed) * laws.damping
-    applied *= np.abs(torque) < laws.limit  # a torque at its limit stays there
-    np.subtract(torque, applied, out=applied)
+    applied = applied_torque(torque, start_speed, end_speed, laws)
     size = np.abs(applied)
     effort[..., MEAN_TORQUE], effort[..., MEAN_SQUARE] = mean(applied), mean(applied * applied)
     power = start_speed + end_speed

@@ -404,6 +404,7 @@ def lay_cables(spec: Any, robot: Robot) -> None:
             name=cable.name,
             frictionloss=servo.friction / cable.pulley,
             damping=servo.damping / cable.pulley**2,
+            armature=servo.armature / cable.pulley**2,
         )
         for joint in cable.hinges:
             tendon.wrap_joint(joint, cable.cord_spacing / 2)

@@ -83,7 +83,8 @@ class _Rigid:
         self.centre, self.mass = np.array(data.subtree_com[0]), float(model.body_subtreemass[0])
         air = float(column(table, "air").sum(axis=0) @ (1.0 - np.array(air_fraction)))
         self.volume, self.air_fraction, self.density = float(column(table, "volume").sum()) - air, air_fraction, density
-        self.reach = 2.0 * float(robot.length)
+        length, extent = float(robot.length), float(np.linalg.norm(data.xpos[1:], axis=1).max())
+        self.reach = 2.0 * length if extent <= length else 2.0 * (length + extent)  # limbs may be longer than the body
         self.sunk = self.volume <= self.mass / density
 
     def lever_at(self, heel: float, nose_up: float) -> tuple[np.ndarray, np.ndarray, float]:

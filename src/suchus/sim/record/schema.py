@@ -13,6 +13,15 @@ from suchus.robot.design.ground import Bumps, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
 
 _MAX_NUMBER, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
+_MAX_TIME, _MIN_SAMPLE_INTERVAL = 1e7, 1e-7  # [s]
+_TIME_TOLERANCE = 1e-9  # [s]
+_MIN_STEPS = 4  # between samples; where there are fewer, none is longer than all the rest
+_RUN_LIMITS = {
+    "mass": (1e-9, 1e9),
+    "period": (1e-9, 1e9),
+    "duty_factor": (0.0, 1.0),
+    "ended": (-_TIME_TOLERANCE, _MAX_TIME),
+}
 XYZ = ("x", "y", "z")
 WXYZ = ("w", "x", "y", "z")
 
@@ -211,6 +220,8 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
     time = record.time
     if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
         raise IncompatibleRecord(f"{source} has times that do not rise.")
+    _check_times(time.values.astype(float), source)
+    _check_runs(record, source)
     legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
     if not _in_pairs(legs):
         legs_text = ", ".join(legs[:8])
@@ -219,13 +230,60 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
         )
 
 
+def _check_times(time: np.ndarray, source: str) -> None:
+    """Refuse times of samples that no run has: before zero, or with a gap longer than all the rest.
+
+    Args:
+        time: rising [s].
+        source: name of the record in messages.
+    """
+    steps = np.diff(time)
+    if time[0] < -_TIME_TOLERANCE or time[-1] > _MAX_TIME:
+        raise IncompatibleRecord(
+            f"{source} has times from {time[0]:.4g} to {time[-1]:.4g} s; 0 to {_MAX_TIME:g} s is allowed: the unit or "
+            "the beginning is another."
+        )
+    if len(steps) and np.median(steps) < _MIN_SAMPLE_INTERVAL:
+        raise IncompatibleRecord(
+            f"{source} has samples {np.median(steps):.3g} s apart; at least {_MIN_SAMPLE_INTERVAL:g} s is allowed: the "
+            "unit of time is another."
+        )
+    longest = int(steps.argmax()) if len(steps) >= _MIN_STEPS else 0
+    if len(steps) >= _MIN_STEPS and steps[longest] > np.delete(steps, longest).sum():
+        raise IncompatibleRecord(
+            f"{source} has no sample from {time[longest]:.4g} to {time[longest + 1]:.4g} s, longer than all the rest "
+            "lasts: cut it there."
+        )
+
+
+def _check_runs(record: xr.Dataset, source: str) -> None:
+    """Refuse numbers of runs that no run has; those that are not finite are unknown."""
+    for name, (lower, upper) in _RUN_LIMITS.items():
+        if name not in record:
+            continue
+        if meaning_error := _other_meaning(record, name):
+            raise IncompatibleRecord(f"{source} holds {meaning_error}: records are in SI units, as suchus writes them.")
+        values = np.asarray(record[name].values)
+        if values.dtype.kind not in "fiub":
+            raise IncompatibleRecord(f"{source} holds {name} that is no number.")
+        values = values[np.isfinite(values)].astype(float)
+        wrong = values[(values < lower) | (values > upper)]
+        if len(wrong):
+            raise IncompatibleRecord(
+                f"{source} holds {name} {wrong[0]:.4g} {PER_RUN[name][0]}; {max(lower, 0.0):g} to {upper:.4g} is "
+                "allowed: make the record again."
+            )
+
+
 def _other_meaning(record: xr.Dataset, name: str) -> str:
     """Return in words how a variable's attributes contradict the schema: another unit, or another variable's meaning.
 
     The text is empty where they agree or are missing.
     """
-    variable, unit = record[name], VARIABLES[name][1] if name in VARIABLES else "s"
-    if (unit_attribute := variable.attrs.get("units", unit)) != unit:
+    variable = record[name]
+    unit = VARIABLES[name][1] if name in VARIABLES else PER_RUN[name][0] if name in PER_RUN else "s"
+    unit_attribute = variable.attrs.get("units", unit)
+    if not isinstance(unit_attribute, str) or unit_attribute != unit:
         return f"{name} in {str(unit_attribute)[:20]!r} instead of {unit}"
     long_name = variable.attrs.get("long_name")
     other_name = next(

@@ -18,6 +18,7 @@ from suchus.swimming.water.measures import (
 from suchus.swimming.water.outline import BodySilhouette, MidlineCurve, Outline, silhouette
 from suchus.swimming.water.passive import with_passive_end
 from suchus.swimming.water.slender import Cruise, Effort, cruise, cycle, reactive, recoil, resistive
+from suchus.swimming.water.speed_range import RealWaterSpeed, SpeedEstimate, real_water_speed
 from suchus.swimming.water.swimming import MODELS, displaced_mass, max_amplitude_factor, survey, swim, wave_speed
 from suchus.swimming.water.undulation import ExactWave, Motion, Undulation, motion_of_record, undulation, unevenness
 from suchus.swimming.water.waves import BodyWave, FilmedWave, PrintedWave, printed_wave
@@ -37,6 +38,8 @@ __all__ = [
     "Outline",
     "PrintedWave",
     "Quarters",
+    "RealWaterSpeed",
+    "SpeedEstimate",
     "Sway",
     "SwimMeasures",
     "Undulation",
@@ -54,6 +57,7 @@ __all__ = [
     "printed_wave",
     "reactive",
     "readings_table",
+    "real_water_speed",
     "recoil",
     "resistive",
     "silhouette",

@@ -21,6 +21,14 @@ export function immersed(kind, depth) {
   return [(1 + d) / 2, -squared / 4];
 }
 
+/** Return how the share of a unit shape under a plane changes with its depth. */
+function emergedPerRise(kind, depth) {
+  const d = Math.min(Math.max(depth, -1), 1), squared = 1 - d * d;
+  if (kind === DISC) return 2 / Math.PI * Math.sqrt(squared);
+  if (kind === BALL) return 0.75 * squared;
+  return Math.abs(depth) < 1 ? 0.5 : 0;
+}
+
 /** Return the volume of a robot under a level surface [m3]. */
 export function submergedVolume(pieces, xpos, xmat, up, level) {
   return pieces.reduce((total, piece) => {
@@ -34,7 +42,7 @@ export function submergedVolume(pieces, xpos, xmat, up, level) {
 /**
  * Add the water's forces to the passive forces and its added mass to the mass matrix.
  * @param {object[]} pieces pieces of the robot, their bodies numbered as MuJoCo numbers them.
- * @param {object} water level, density, viscosity, cross_drag, thickening, added_mass, shedding, length, gravity, up.
+ * @param {object} water level, density, viscosity, cross_drag, thickening, added_mass, shedding, splash, length, gravity, up.
  * @param {object} model arrays of the model: body_parentid, body_rootid, body_dofadr, body_dofnum, dof_bodyid, M_rownnz, M_rowadr, M_colind.
  * @param {object} data arrays of the data: qvel, xpos, xmat, subtree_com, cvel, cdof, cdof_dot; qfrc_passive and M are written.
  * @returns {number} the volume under water [m3]; the mass matrix must be factored anew where it is not 0.
@@ -84,7 +92,7 @@ function addPiece(piece, water, model, data, bias, sums) {
   const centre = plus(three(data.xpos, 3 * body), toWorld(data.xmat, body, piece.at));
   const [ua, ub, ut] = [a, b, t].map((axis, i) => piece.half[i] * dot(water.up, axis));
   const extent = Math.sqrt(ua * ua + ub * ub + ut * ut);
-  const [fraction, moment] = immersed(piece.kind, (water.level - dot(water.up, centre)) / extent);
+  const depth = (water.level - dot(water.up, centre)) / extent, [fraction, moment] = immersed(piece.kind, depth);
   if (!(fraction > 0)) return 0;
   const arm = times(1 / extent, blend(piece.half[0] * ua, a, piece.half[1] * ub, b, piece.half[2] * ut, t));
   const r = plus(centre, times(-1, three(data.subtree_com, 3 * model.body_rootid[body])));
@@ -116,6 +124,14 @@ function addPiece(piece, water, model, data, bias, sums) {
   const added = plus(apply(rate), cross(omega, momentum));
   f = plus(f, times(-1, added));
   torque = plus(torque, times(-1, plus(cross(v, momentum), cross(r, added))));
+  // the change of added mass at the surface, whose cut lies at the depth times the point highest up
+  const lever = times(depth, arm), cut = emergedPerRise(piece.kind, depth) / extent;
+  const sunk = piece.added.map((value, i) => water.density * water.added_mass * value * w[i]);
+  const fractionRate = -cut * dot(water.up, plus(v, cross(omega, lever))), lost = fractionRate + 0.5 * water.splash * Math.abs(fractionRate);
+  const push = times(-0.5 * cut * dot(sunk, w), water.up);
+  const change = plus(push, times(-lost, blend(sunk[0], a, sunk[1], b, sunk[2], t)));
+  torque = plus(torque, plus(cross(lever, push), cross(r, change)));
+  f = plus(f, change);
   const [x, y, z] = tensor.map((row) => cross(r, row)); // rows: force by rotation
   const parts = [r[1] * z[0] - r[2] * y[0], r[2] * x[0] - r[0] * z[0], r[2] * x[1] - r[0] * z[1],
     r[0] * y[0] - r[1] * x[0], r[0] * y[1] - r[1] * x[1], r[0] * y[2] - r[1] * x[2], ...x, ...y, ...z,

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -82,6 +82,7 @@ class CrawlStability(TwoGroups):
         "roll_pp_limbs_only",
     )
     needs = ("limbs", "axis")
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     def quick(self) -> "CrawlStability":
         """One cycle, two repeats."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import pi, radians
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -54,6 +54,7 @@ class DeathRoll(Experiment):
         "power_c_shape_water",
     )
     needs = ("trunk", "trunk_pitch", "tail_yaw", "tail_pitch")
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 3}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that rolls."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import nan
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -68,6 +68,7 @@ class Displacement(TwoGroups):
         "gain_tail_contact",
     )
     needs = ("limbs", "axis")
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     strokes: tuple[float, ...] = tuple(
         stroke / _CRAWL.stroke for stroke in (0.01, 0.02, _CRAWL.stroke, 0.04, 0.055, 0.07, 0.085)

@@ -107,6 +107,7 @@ class Feedback(Experiment):
     judged_minima: ClassVar[Mapping[str, float]] = {
         "starts": 16, "compared_starts": 6, "cycles": 12, "hold": 2.0, "after": 5,
     }  # fmt: skip
+    answer_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""

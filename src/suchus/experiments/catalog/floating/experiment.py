@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import nan, pi, radians
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -60,6 +60,7 @@ class Floating(Experiment):
         "vanishing_floating",
         "roll_at_rest",
     )
+    answer_minima: ClassVar[Mapping[str, float]] = {"duration": 10.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that floats."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -18,6 +18,7 @@ from suchus.experiments.experiment import (
     Outcome,
     Progress,
     SimulationResult,
+    estimated,
     silent,
     staged,
 )
@@ -27,7 +28,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.kinematics.tail import bend_of_servo
 from suchus.robot.motion import START, Gait, as_table, intended
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Run, simulate
+from suchus.sim.land import Run, Tolerances, simulate
 from suchus.sim.metrics import (
     bend_swings,
     diagonal_phase_error,
@@ -61,6 +62,9 @@ class GaitDiagram(Experiment):
     without a tail, or without a trunk that bends, has no track of that part. The commanded cycle is also written as a
     gait file, a table of servo angles in which every angle can be changed.
 
+    How far the stances of diagonal pairs are apart is judged of robots as built; everything else is shown of the robot
+    exactly as designed, and that number of it as ``diagonal_phase_error_designed``.
+
     A body with two pairs of limbs is compared with an animal. No foot phases of a crocodilian are published as
     numbers, so the animal is a filmed salamander (the gait ``animal_walk``).
     """
@@ -76,7 +80,8 @@ class GaitDiagram(Experiment):
         "tail_gain",
     )
     needs = ("limbs",)
-    judged_settings = ("robot", "gait", "cycles")
+    judged_settings = ("robot", "gait", "cycles", "tolerances")
+    judged_minima: ClassVar[Mapping[str, float]] = {"repeats": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -84,20 +89,32 @@ class GaitDiagram(Experiment):
     """The gait that is shown."""
     cycles: int = int(CYCLES)
     """Number of cycles that are shown [-]."""
+    repeats: int = 12
+    """Number of robots built of the design whose diagonal pairs are judged [-]."""
+    tolerances: Tolerances = field(default_factory=Tolerances)
+    """Tolerances of the robots built of the design, and of their grounds."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
             check.whole("cycles", 2, 1000)  # one cycle cannot show periodicity
+            check.whole("repeats", 1, 1000)
 
     def quick(self) -> "GaitDiagram":
-        """The same: it takes a second."""
-        return replace(self)
+        """The same with fewer robots: it takes a second."""
+        return replace(self, repeats=min(self.repeats, 6))
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
-        """Crawl."""
+        """Crawl, exactly as designed and as built."""
         end = START + self.cycles * self.gait.period
         run = Run(robot=self.robot, gait=self.gait)
-        record = simulate([run], duration=end, progress=staged(progress, "crawl", 0.0, 1.0)).isel(run=0)
+        runs = [run, *self.tolerances.repeats([run], self.repeats)]
+        records = simulate(runs, duration=end, progress=staged(progress, "crawl", 0.0, 1.0))
+        record = records.isel(run=0)
+        record["built_diagonal_phase_error"] = (
+            "repeat",
+            [float(diagonal_phase_error(records.isel(run=1 + i))) for i in range(self.repeats)],
+            {"units": "1", "long_name": "time between the stances of a diagonal pair, robots as built [cycle]"},
+        )
         commanded = _commanded_bends(self.robot, record.servo_target.transpose("time", "servo").values)
         for body_part, bend in commanded.items():
             part, direction = body_part.removesuffix("_vertical"), _positive_direction(body_part)
@@ -144,10 +161,11 @@ class GaitDiagram(Experiment):
                 abs((float(phase.sel(leg=leg)) - _ANIMAL_PHASES[leg] + 0.5) % 1.0 - 0.5) for leg in legs
             ]
             measures["animal_phase_apart"] = Measure(max(phase_differences), "cycle")
+        measures |= estimated("diagonal_phase_error", record.built_diagonal_phase_error.values, "cycle")
         return measures | {
             "duty_factor_greatest": Measure(float(duty.max()), "-"),
             "duty_factor_commanded": Measure(float(record.duty_factor), "-"),
-            "diagonal_phase_error": Measure(float(diagonal_phase_error(record)), "cycle"),
+            "diagonal_phase_error_designed": Measure(float(diagonal_phase_error(record)), "cycle"),
             "period": Measure(_period(walk), "s"),
             "cycles": Measure(
                 float(round(float(walk.limb_phase.isel(leg=0)[-1] - walk.limb_phase.isel(leg=0)[0]))), "cycle"

@@ -3,7 +3,7 @@
 from math import radians
 
 from suchus.article.verdict.judging import Examples
-from suchus.article.verdict.rule import Clause, Rule
+from suchus.article.verdict.rule import DEFAULT_SPREAD_OF, Clause, Rule, measure_with_interval
 
 RULES = (
     Rule(
@@ -14,7 +14,11 @@ RULES = (
             Clause("diagonal_phase_error", "<", 0.125, "Hildebrand: a trot within an eighth of a cycle"),
             Clause("duty_factor_greatest", "<=", 0.95, "a foot that hardly leaves the ground has no phase"),
         ),
-        why="By pressure the stances of a diagonal pair are at most {diagonal_phase_error:.2f} cycle apart; the foot "
+        spread=("diagonal_phase_error",),
+        of=DEFAULT_SPREAD_OF,
+        why="By pressure the stances of a diagonal pair are at most {diagonal_phase_error:.3f} cycle apart "
+        "({diagonal_phase_error_low:.3f} to {diagonal_phase_error_high:.3f}) in robots as built and "
+        "{diagonal_phase_error_designed:.3f} exactly as designed; the foot "
         "that stands longest does so {duty_factor_greatest:.0%} of the time.",
     ),
     Rule(
@@ -57,13 +61,18 @@ RULES = (
     ),
 )
 
-_DIAGONAL = {"diagonal_phase_error": 0.124, "duty_factor_greatest": 0.949}
+_DIAGONAL = {
+    **measure_with_interval("diagonal_phase_error", 0.11, 0.124),
+    "diagonal_phase_error_designed": 0.13,
+    "duty_factor_greatest": 0.949,
+}
 _BENDS = {"spine_changes_per_cycle": 2.0, "tail_changes_per_cycle": 2.0}
 
 EXAMPLES: Examples = {
     "diagonal_gait": [
         (_DIAGONAL, "reproduced"),
-        (_DIAGONAL | {"diagonal_phase_error": 0.126}, "contradicted"),
+        (_DIAGONAL | measure_with_interval("diagonal_phase_error", 0.11, 0.126), "undecided"),
+        (_DIAGONAL | measure_with_interval("diagonal_phase_error", 0.126, 0.13), "contradicted"),
         (_DIAGONAL | {"duty_factor_greatest": 0.951}, "contradicted"),
     ],
     "gait_diagram": [

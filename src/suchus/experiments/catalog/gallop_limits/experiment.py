@@ -57,6 +57,7 @@ class GallopLimits(Experiment):
     judged_minima: ClassVar[Mapping[str, float]] = {
         "speeds": 4, "torques": 3, "seconds": 3.0, "repeats": 6,
     }  # fmt: skip
+    answer_minima: ClassVar[Mapping[str, float]] = {"seconds": 3.0, "repeats": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that should gallop."""

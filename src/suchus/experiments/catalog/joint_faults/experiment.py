@@ -96,6 +96,7 @@ class JointFaults(TwoGroups):
     needs = ("limbs",)
     judged_settings = ("robot", "gait", "control_group", "lifted", "cycles", "hold", "kind", "legs", "tolerances")
     judged_minima: ClassVar[Mapping[str, float]] = {"repeats": 6}
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     lifted: float = LIFTED
     """Pitch of the tail of the control group with its tail in the air, for comparison, down positive [rad]."""

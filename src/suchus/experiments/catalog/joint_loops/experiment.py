@@ -58,6 +58,7 @@ class JointLoops(Experiment):
     needs = ("limbs",)
     judged_settings = ("robot", "gait", "joint", "step")
     judged_minima: ClassVar[Mapping[str, float]] = {"integrals": 3, "cycles": CYCLES, "seconds": 4.0}
+    answer_minima: ClassVar[Mapping[str, float]] = {"seconds": 4.0, "cycles": 2}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose servos are tested."""

@@ -63,6 +63,7 @@ class PatternGeneratorExperiment(Experiment):
     needs = ("limbs", "axis")
     judged_settings = ("robot", "gait", "walk", "swim", "asymmetry")
     judged_minima: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 6.0}
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 5, "followed": 12.0, "shore_time": 30.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot, with limbs and an axis that bends sideways."""

@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import xarray as xr
@@ -38,7 +38,9 @@ from suchus.sim.land import Ground, Lake, Run, Tolerances, simulate
 from suchus.sim.land.tolerances import with_masses
 from suchus.sim.metrics import cost_of_transport
 
-ARMS = ("policy", "fault_policy", "open_loop", "feedback")
+STILL_AXIS = "still_axis"
+"""Arm of the policy that may not bend spine and tail."""
+ARMS = ("policy", "fault_policy", STILL_AXIS, "open_loop", "feedback")
 """Controls that are compared."""
 UNDISTURBED = "undisturbed"
 """Condition of a walk without a disturbance."""
@@ -84,6 +86,10 @@ class Policies(Experiment):
     is the mean of the errors of speed and of turning rate, each over its greatest command; a robot that falls counts
     as standing still. All controls get the same robots as built. Disturbances act on a walk straight ahead at
     ``test_speed``. A policy whose network reads failures walks twice with a failed joint: told of it, and not.
+
+    Where a policy has several seeds, they take turns: the first robot gets the first seed, and so on, so that intervals
+    are over pairs of a robot and a seed. A policy whose spine and tail are held straight walks undisturbed beside the
+    one that may bend them; both were trained with the same budget.
     """
 
     title = "Does a trained policy follow its commands, and what does it bear?"
@@ -98,6 +104,7 @@ class Policies(Experiment):
     )
     reproduces = False
     follows_gait = False
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 4.0, "robots": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that the policy moves."""
@@ -105,6 +112,8 @@ class Policies(Experiment):
     """The policy that is judged; None for the robot's ``velocity`` or ``swim`` of the catalog."""
     fault_policy: Policy | None = None
     """A second policy beside it; None for one of the catalog that was trained with faults, where there is one."""
+    still_policy: Policy | None = None
+    """A policy that may not bend spine and tail; None for that of the catalog, where there is one."""
     arms: tuple[str, ...] = ARMS
     """Controls that are compared, ``policy`` among them."""
     speeds: tuple[float, ...] = (1 / 3, 2 / 3, 1.0)
@@ -167,9 +176,13 @@ class Policies(Experiment):
                 unknown = [choice for choice in getattr(self, name) if choice not in options]
                 check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(options)}")
             check.that("policy" in self.arms, f"{self.name()}.arms is {self.arms}; 'policy' is needed among them")
-            for policy in (self.policy, self.fault_policy):
+            for policy in (self.policy, self.fault_policy, self.still_policy):
                 if policy is not None:
                     policy.check_robot(self.robot)
+            check.that(
+                self.still_policy is None or not self.still_policy.bends_axis,
+                f"{self.name()}.still_policy may bend spine and tail; a policy of suchus train --still-axis is needed",
+            )
 
     def quick(self) -> "Policies":
         """One robot, two commands, two disturbed walks, a cycle each, without the second policy."""
@@ -188,7 +201,9 @@ class Policies(Experiment):
 
     def for_robot(self, robot: Robot) -> Self:
         """Return the same question for another robot and the policy of the catalog that was trained for it."""
-        plain = replace(self, robot=robot, joints=(), policy=None, fault_policy=None, timestep=coarse_step(robot))
+        plain = replace(
+            self, robot=robot, joints=(), policy=None, fault_policy=None, still_policy=None, timestep=coarse_step(robot)
+        )
         return replace(plain, joints=plain.joint_names[: len(self.joints)])
 
     @property
@@ -219,6 +234,17 @@ class Policies(Experiment):
         return None
 
     @property
+    def straight_policy(self) -> Policy | None:
+        """The policy that may not bend spine and tail; None where the catalog has none for the robot and the task."""
+        if self.still_policy is not None:
+            return self.still_policy
+        name = f"{self.judged_policy.task}_{STILL_AXIS}"
+        for full_name in (f"{name}_{self.robot.name}", name):
+            if full_name in POLICIES and POLICIES[full_name].robot == self.robot.name:
+                return POLICIES[full_name]
+        return None
+
+    @property
     def joint_names(self) -> tuple[str, ...]:
         """Joints that fail."""
         place = layout(self.robot)
@@ -241,6 +267,9 @@ class Policies(Experiment):
         policies = {"policy": self.judged_policy}
         if second is not None and second != self.judged_policy:
             policies["fault_policy"] = second
+        straight = self.straight_policy if STILL_AXIS in self.arms else None
+        if straight is not None and self.judged_policy.bends_axis:
+            policies[STILL_AXIS] = straight
         return policies
 
     def arm_names(self) -> tuple[str, ...]:
@@ -276,17 +305,19 @@ class Policies(Experiment):
         kind, _, joint = condition.partition("_")
         return (FAULTS[kind](joint, at=START),) if joint in servos else ()  # type: ignore[call-arg]
 
-    def _control(self, arm: str, case: Case, calibration: Calibration) -> tuple[Gait, Control]:
+    def _control(self, arm: str, case: Case, calibration: Calibration, robot: int = 0) -> tuple[Gait, Control]:
         """Return the gait and the control of an arm for a command.
 
         Args:
             arm: name of the arm.
             case: condition and command.
             calibration: what the gait does at its own frequency.
+            robot: number of the robot, which decides the seed of the policy.
         """
         policies, gait = self._policies(), self.judged_policy.gait
         policy = policies.get(arm.removesuffix(_TOLD))
         if policy is not None:
+            policy = policy.seeds[robot % len(policy.seeds)]
             failures = tuple((START, fault.part) for fault in self._faults(case.condition)) if _is_told(arm) else ()
             return policy.gait, Learned(policy=policy, forward=case.speed, turn=case.turn, failures=failures)
         rate = np.clip(case.speed / calibration.speed, 0.05, calibration.max_rate) if calibration.speed > 0.0 else 1.0
@@ -373,9 +404,12 @@ class Policies(Experiment):
         for (i, arm), (j, case) in product(enumerate(arms), enumerate(cases)):
             if _is_told(arm) and not self._is_failure(case.condition):
                 continue
-            gait, control = self._control(arm, case, calibration)
-            cells += [(i, j, k) for k in range(self.robots)]
-            runs += [self._run(gait, control, case.condition, seed, f"{arm}, {case.condition}") for seed in seeds]
+            if arm == STILL_AXIS and case.condition != UNDISTURBED:
+                continue
+            for k, seed in enumerate(seeds):
+                gait, control = self._control(arm, case, calibration, k)
+                cells.append((i, j, k))
+                runs.append(self._run(gait, control, case.condition, seed, f"{arm}, {case.condition}"))
         walks = self._simulate(runs, staged(progress, "walks", 0.03, 1.0))
         start, end = self._window()
         record = _gather(
@@ -441,6 +475,9 @@ class Policies(Experiment):
             if arm != "policy":
                 excess = (error.sel(of_arm) - error.sel(arm="policy")).isel(grid).mean("case")
                 measures |= estimated(f"error_excess_{arm}", excess, "-")
+            if arm == STILL_AXIS:
+                costs = record.cost.isel(straight).mean("case", skipna=False)
+                measures |= estimated(f"cost_excess_{arm}", costs.sel(of_arm) - costs.sel(arm="policy"), "-")
         for condition in _conditions(record):
             test = {"case": (record.condition == condition) & (record.commanded_turn == 0.0)}
             test["case"] &= abs(record.commanded_speed - record.commanded_speed[-1]) < 1e-9
@@ -475,14 +512,40 @@ class Policies(Experiment):
             comparison={
                 arm: comparison(measures, f"error_excess_{arm}") for arm in rivals if f"error_excess_{arm}" in measures
             },
+            seed_count=len(policy.seeds),
+            axis=self._axis_comparison(measures),
             commands=sum(case.condition == UNDISTURBED for case in self.cases()),
             falls=[name for name, value in measures.items() if _is_fall(name, value)],
             fall_text=lambda name: _fall_text(name, self.arm_names()),
         )
 
+    def _axis_comparison(self, measures: Mapping[str, float]) -> dict[str, Any]:
+        """Return what spine and tail bring to a policy, for the explanation; empty where nothing was compared."""
+        straight = self._policies().get(STILL_AXIS)
+        if straight is None or f"error_excess_{STILL_AXIS}" not in measures:
+            return {}
+        bending = self.judged_policy
+        return {
+            "error": comparison(measures, f"error_excess_{STILL_AXIS}"),
+            "cost": comparison(measures, f"cost_excess_{STILL_AXIS}"),
+            "seeds": min(len(bending.seeds), len(straight.seeds)),
+            "differences": training_differences(bending, straight),
+        }
+
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw commands and what was reached, and the tracking error in each condition."""
         return {"policies_tracking": draw_tracking(outcome.record), "policies_errors": draw_errors(outcome)}
+
+
+def training_differences(first: Policy, second: Policy) -> list[str]:
+    """Return in what the trainings of two policies differ that should be compared: budget, seeds or commands."""
+    records = [dict(policy.training) for policy in (first, second)]
+    differences = [
+        name for name in ("table generations", "network generations") if records[0].get(name) != records[1].get(name)
+    ]
+    differences += ["seeds"] if len(first.seeds) != len(second.seeds) else []
+    has_other_commands = (first.speeds, first.turns) != (second.speeds, second.turns)
+    return differences + (["commands"] if has_other_commands else [])
 
 
 def comparison(measures: Mapping[str, float], name: str) -> str:

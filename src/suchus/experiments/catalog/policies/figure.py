@@ -15,6 +15,7 @@ ARM_LABELS: Final[Mapping[str, str]] = MappingProxyType(
         "policy_told": "the policy, told of the fault",
         "fault_policy": "the policy trained with faults",
         "fault_policy_told": "the policy trained with faults, told of the fault",
+        "still_axis": "the policy with a still axis",
         "open_loop": "the gait by hand",
         "feedback": "the feedback rules",
     }
@@ -26,6 +27,7 @@ _ARM_STYLES: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "policy_told": (COLOURS["policy"], "D"),
         "fault_policy": (COLOURS["coordinated"], "s"),
         "fault_policy_told": (COLOURS["coordinated"], "P"),
+        "still_axis": (COLOURS["limbs_tail_lifted"], "X"),
         "open_loop": (COLOURS["limbs_only"], "^"),
         "feedback": (COLOURS["tail_drag"], "v"),
     }

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import radians
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -135,6 +135,7 @@ class Rehearsal(Experiment):
     answers = ("position_off", "wire_off", "goal_off", "angle_off", "latency_budget", "flagged")
     needs = ("limbs",)
     reproduces = False
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""

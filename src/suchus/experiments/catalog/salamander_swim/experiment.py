@@ -56,6 +56,7 @@ class SalamanderSwim(Experiment):
     needs = ("salamander_joints",)
     judged_settings = ("robot", "frequencies")
     judged_minima: ClassVar[Mapping[str, float]] = {"settle": 6, "cycles": 4}
+    answer_minima: ClassVar[Mapping[str, float]] = {"settle": 6, "cycles": 4}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["salamander"])
     """The robot that swims; a table of angles made for it is played."""

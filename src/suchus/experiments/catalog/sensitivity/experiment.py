@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import log2
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -44,6 +44,7 @@ class Sensitivity(Experiment):
     shows = "Section IV, Figs 12 to 21"
     answers = ("samples_walked", "samples_impossible")
     needs = ("tables", "article_spine", "cable_tail")
+    answer_minima: ClassVar[Mapping[str, float]] = {"samples": 16, "cycles": 2}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose other fields all samples share."""

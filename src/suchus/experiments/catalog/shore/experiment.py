@@ -90,6 +90,7 @@ class Shore(Experiment):
     answers = ("ashore_share", "time_ashore", "falls", "into_water_share", "speed_swimming", "speed_ashore")
     reproduces: ClassVar[bool] = False
     needs = ("limbs", "axis")
+    answer_minima: ClassVar[Mapping[str, float]] = {"duration": 30.0, "seeds": 2}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot; it must float."""

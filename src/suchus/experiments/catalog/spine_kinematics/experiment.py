@@ -12,7 +12,16 @@ from suchus.core.checks import Checks
 from suchus.experiments.catalog._frames import draw_frames, frames_of
 from suchus.experiments.catalog.spine_kinematics import figure as pictures
 from suchus.experiments.catalog.spine_kinematics.rules import EXACT
-from suchus.experiments.experiment import Experiment, Measure, Measures, Outcome, Progress, SimulationResult, silent
+from suchus.experiments.experiment import (
+    Experiment,
+    Measure,
+    Measures,
+    Outcome,
+    Progress,
+    SimulationResult,
+    estimated,
+    silent,
+)
 from suchus.robot.design import Robot, spine_joints
 from suchus.robot.design.measures import SpineMeasures
 from suchus.robot.kinematics import printed, spine
@@ -93,8 +102,8 @@ class SpineKinematics(Experiment):
                 "round_trip_error": Measure(float(record.error_inverse.max()), "m"),
                 "round_trip_azimuth_error": Measure(float(record.error_azimuth.max()), "rad"),
                 "original_angles_found": Measure(float((record.angle_missed < 1e-6).mean()), "-"),
-                "bending_saved_median": Measure(float(record.bending_saved.median()), "-"),
             },
+            estimated("bending_saved_median", record.bending_saved.values, "-"),
             {
                 name: Measure(float(record.attrs[name]), "-")
                 for name in ("straight_jacobian_rank", "spine_joints", "spine_lateral_joints", "spine_pitch_joints")

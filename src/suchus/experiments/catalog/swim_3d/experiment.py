@@ -37,8 +37,10 @@ from suchus.sim.metrics import settled_mean, swim_numbers
 from suchus.swimming.coupling import check_on_joints, swim_on_joints
 from suchus.swimming.water import (
     Motion,
+    SpeedEstimate,
     fit,
     printed_wave,
+    real_water_speed,
     swim,
 )
 from suchus.swimming.water.resolved import ON_THE_SPOT, SwimSetting, check_resolved_swim, resolved_swim
@@ -97,6 +99,7 @@ class Swim3d(Experiment):
         "speed_reactive_real_water",
     )
     needs = ("trunk", "tail_yaw")
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 6}
     reproduces: ClassVar[bool] = False
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
@@ -341,6 +344,18 @@ class Swim3d(Experiment):
             _loads(record),
             _joints(record),
         )
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how fast the body swims in this water, and what that says of real water."""
+        reynolds = measures["reynolds_real_water"]
+        speeds = {model: (measures[f"speed_{model}_real_water"], reynolds) for model in ("resistive", "reactive")}
+        speeds |= {"slice": (measures["speed_slice"], measures["reynolds"])}
+        speeds |= {"space": (measures["speed"], measures["reynolds"])}
+        estimates = [
+            SpeedEstimate(model=model, speed=speed, low=speed, high=speed, reynolds=number)
+            for model, (speed, number) in speeds.items()
+        ]
+        return self.render_explanation(measures, real_water=real_water_speed(estimates, reynolds))
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw speeds over the cycles, the wake, the tails and the joints' torques."""

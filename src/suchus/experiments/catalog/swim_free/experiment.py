@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, pi
-from typing import Any
+from typing import Any, ClassVar
 from warnings import warn
 
 import numpy as np
@@ -50,7 +50,7 @@ from suchus.sim.land.lake import check_lake
 from suchus.sim.land.waters import Form
 from suchus.sim.metrics import SettledMean, cycle_speeds, settled_mean, swim_numbers, whole_cycles
 from suchus.sim.record import WATER
-from suchus.swimming.water import Outline, swim, swim_of
+from suchus.swimming.water import Outline, RealWaterSpeed, SpeedEstimate, real_water_speed, swim, swim_of
 from suchus.swimming.water.samples import check_checkpoint_folder, checkpoint_paths
 from suchus.swimming.water.sections import correction_factors
 from suchus.swimming.water.slender import cruise, cycle, reactive
@@ -92,6 +92,7 @@ class SwimFree(Experiment):
     title = "How does it swim in six degrees of freedom, at the surface?"
     shows = "Section IV.B, eq. (20); beyond the article"
     answers = (
+        "speed_real_water",
         "speed_space",
         "speed_slice",
         "speed_whole",
@@ -102,6 +103,7 @@ class SwimFree(Experiment):
         "servo_power",
     )
     needs = ("axis",)
+    answer_minima: ClassVar[Mapping[str, float]] = {"settle": 24, "dive": 24}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""
@@ -389,7 +391,7 @@ class SwimFree(Experiment):
         means = {label: _settled_speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
         speed = {label: mean.mean for label, mean in means.items()}
         excerpts = {label: _settled_cycles(record.isel(run=i), means[label].start) for i, label in enumerate(labels)}
-        whole_swim, measures = excerpts["whole"], {}
+        whole_swim, measures = excerpts["whole"], Measures()
         for name in [name for name in MOTIONS if name in labels]:
             measures[f"speed_{name}"] = Measure(speed[name], "m/s")
             if f"{name}_stiff" in speed:
@@ -407,9 +409,8 @@ class SwimFree(Experiment):
         steered_start = _steered_start(record.isel(run=labels.index("steered")), record)
         steered_swim = _settled_cycles(record.isel(run=labels.index("steered")), steered_start)
         yaw = np.unwrap(rotation.yaw(whole_swim.orientation.values))
-        return (
-            measures
-            | submerged.measures(record)
+        measures |= (
+            submerged.measures(record)
             | {
                 "speed_low": Measure(min(waters), "m/s"),
                 "speed_high": Measure(max(waters), "m/s"),
@@ -446,6 +447,42 @@ class SwimFree(Experiment):
             | _shares(excerpts, record.attrs["cable"])
             | flow_measures(record)
         )
+        real_water = self.real_water_speed({name: measure.value for name, measure in measures.items()})
+        return measures | {
+            "speed_real_water": Measure(real_water.speed, "m/s"),
+            "speed_real_water_low": Measure(real_water.low, "m/s"),
+            "speed_real_water_high": Measure(real_water.high, "m/s"),
+        }
+
+    def real_water_speed(self, measures: Mapping[str, float]) -> RealWaterSpeed:
+        """Return the speed of the whole wave in real water, over the models that apply.
+
+        Args:
+            measures: numbers of the run by name.
+        """
+        reynolds = self.frequency * self.robot.length**2 / Water().viscosity
+        sections = SpeedEstimate(
+            model="sections",
+            speed=measures["speed_whole"],
+            low=measures["speed_low"],
+            high=measures["speed_high"],
+            reynolds=reynolds,
+        )
+        speeds = {model: (measures[f"speed_whole_{model}"], reynolds) for model in _MODELS}
+        speeds |= {
+            model: (measures[f"speed_{model}"], self.reynolds)
+            for model in ("slice", "space")
+            if f"speed_{model}" in measures
+        }
+        others = [
+            SpeedEstimate(model=model, speed=speed, low=speed, high=speed, reynolds=number)
+            for model, (speed, number) in speeds.items()
+        ]
+        return real_water_speed([sections, *others], reynolds)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say how fast it swims in real water first, then what its parts, its cable and the flow do."""
+        return self.render_explanation(measures, real_water=self.real_water_speed(measures))
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""

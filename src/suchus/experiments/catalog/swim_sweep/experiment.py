@@ -84,6 +84,7 @@ class SwimSweep(Experiment):
     )
     reproduces: ClassVar[bool] = False
     needs = ("axis",)
+    answer_minima: ClassVar[Mapping[str, float]] = {"frequencies": 6, "cycles": 6}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from math import nan
 from typing import Any, ClassVar
 
 import numpy as np
@@ -44,6 +45,7 @@ from suchus.experiments.experiment import (
     staged,
 )
 from suchus.robot.design import Robot
+from suchus.robot.design.water import Water
 from suchus.robot.kinematics.wave import READINGS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics import swim_numbers
@@ -52,6 +54,8 @@ from suchus.swimming.water import (
     Fit,
     Motion,
     Quarters,
+    RealWaterSpeed,
+    SpeedEstimate,
     SwimMeasures,
     attempts,
     convex_higher,
@@ -59,6 +63,7 @@ from suchus.swimming.water import (
     fit,
     printed_wave,
     readings_table,
+    real_water_speed,
     swim,
 )
 from suchus.swimming.water.resolved import FREE, TETHERED, SwimSetting, resolved_swim, towed_drag
@@ -108,6 +113,7 @@ class PlaneSwims(Experiment):
     needs = ("trunk", "tail_yaw")
     judged_settings = ("robot", "reading", "frequency", "reynolds")
     judged_minima: ClassVar[Mapping[str, float]] = {"cells": 80, "space_cells": 68, "cycles": 10}
+    answer_minima: ClassVar[Mapping[str, float]] = {"cells": 80, "cycles": 10}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that swims."""
@@ -227,6 +233,24 @@ class PlaneSwims(Experiment):
             measures(record, self.robot.length),
             _loads(held_swim, self.robot),
         )
+
+    def real_water_speed(self, measures: Mapping[str, float]) -> RealWaterSpeed:
+        """Return the speed of trunk and tail in real water, over the models that apply.
+
+        Args:
+            measures: numbers of the run by name.
+        """
+        real = self.frequency * self.robot.length**2 / Water().viscosity
+        estimates = []
+        for model in ("sections", "resistive", "reactive", "slice", "space"):
+            speed = measures.get(f"speed_trunk_and_tail_{model}", nan)
+            reynolds = self.reynolds if model in ("slice", "space") else real
+            estimates.append(SpeedEstimate(model=model, speed=speed, low=speed, high=speed, reynolds=reynolds))
+        return real_water_speed(estimates, real)
+
+    def explain(self, measures: Mapping[str, float]) -> str:
+        """Say what spine and tail add by each model, and how fast it swims in real water."""
+        return self.render_explanation(measures, real_water=self.real_water_speed(measures))
 
     def _setting(self, cycles: int, *, cells: int, reynolds: float, is_held: bool = True) -> SwimSetting:
         viscosity = self.frequency * self.robot.length**2 / reynolds

@@ -57,6 +57,7 @@ class TailBending(Experiment):
     follows_gait = False
     judged_settings = ("robot", "furthest", "gait", "cycles")
     judged_minima: ClassVar[Mapping[str, float]] = {"steps": 91}
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot whose tail is examined."""

@@ -86,6 +86,7 @@ class Terrain(Experiment):
     judged_minima: ClassVar[Mapping[str, float]] = {
         "bumps": 2, "steps": 3, "stones": 3, "transitions": 6, "seeds": 4, "flat_robots": 6, "walked": 14.0,
     }  # fmt: skip
+    answer_minima: ClassVar[Mapping[str, float]] = {"seeds": 4, "walked": 10.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that walks."""

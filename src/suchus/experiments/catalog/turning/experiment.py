@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -54,6 +54,7 @@ class Turning(Experiment):
         "tightest_both_semi_erect",
     )
     needs = ("limbs",)
+    answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 10, "bends": 4}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that turns."""

@@ -38,6 +38,7 @@ class WorkingSpace(Experiment):
     needs = ("legs", "shells", "article_spine", "tail")
     judged_settings = ("robot", "gait")
     judged_minima: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
+    answer_minima: ClassVar[Mapping[str, float]] = {"crawling": 2**19, "standing": 2**18}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that reaches."""

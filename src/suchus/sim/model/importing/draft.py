@@ -230,7 +230,8 @@ def draft_axis(making: Making) -> tuple[tuple[Segment, ...], str, list[float]]:
         if length <= 1e-6:
             raise UnreadableFile(
                 f"{tree_part.name} is {length:.3g} m long from its front joint to its rear one; the axis must be drawn "
-                "stretched, from the front to the rear, at zero posture."
+                "stretched, from the front to the rear, at zero posture. If it belongs to an arm or a gripper, say "
+                "--leave BODY, with the first body of that."
             )
         shapes = _shapes(making, tree_part, ends[i], length, i)
         inertia = making.inertia(f"axis[{i}]", [tree_part], np.array([ends[i], 0.0, 0.0]))
@@ -419,7 +420,8 @@ def draft_girdle(making: Making, number: int) -> Girdle:
     if hip[1] < _MIN_HIP_OFFSET:
         placement_text = f"the draft has them {_MIN_HIP_OFFSET:g} m beside it"
         making.remarks.append(f"The hips of girdle {name} lie in the midline; {placement_text}.")
-    limb = _limb(making, left_chain, left_turns, labels, f"girdles[{number}].limb")
+    parts = _mean_parts(making, left_chain, right_chain)
+    limb = _limb(making, left_chain, parts, left_turns, labels, f"girdles[{number}].limb")
     return Girdle(
         name=name,
         segment="-",
@@ -437,17 +439,52 @@ def lowest_foot_height(girdle: Girdle) -> float:
     return float(limb_kinematics.forward(girdle.limb, angles)[:, 2].min()) + girdle.above
 
 
-def _limb(making: Making, chain: LimbChain, turns: list[tuple[Turn, float]], labels: list[str], note_path: str) -> Limb:
+_MASS_TOLERANCE = 1e-3  # relative difference of the limbs' masses from which on it is said
+
+
+def _mean_parts(making: Making, left_chain: LimbChain, right_chain: LimbChain) -> list[TreePart]:
+    """Return the parts of the left limb, each with the mean mass of its and its partner's, so that the robot's is kept.
+
+    Args:
+        making: the draft, which takes a remark where the masses differ.
+        left_chain: parts of the left limb.
+        right_chain: parts of the right one, as many.
+    """
+    left_parts, right_parts = ([making.plan.tree_part(i) for i in chain.parts] for chain in (left_chain, right_chain))
+    if len(left_parts) != len(right_parts):
+        return left_parts
+    left_mass, right_mass = (sum(tree_part.mass for tree_part in parts) for parts in (left_parts, right_parts))
+    if abs(left_mass - right_mass) > _MASS_TOLERANCE * max(left_mass, right_mass):
+        making.remarks.append(
+            f"The limb of {left_parts[0].name} has {left_mass:.4g} kg and that of {right_parts[0].name} "
+            f"{right_mass:.4g} kg; the draft has the mean on both sides."
+        )
+    mean_parts = []
+    for left, right in zip(left_parts, right_parts, strict=True):
+        mass = (left.mass + right.mass) / 2
+        tensor = left.tensor * (mass / left.mass) if left.mass > 0.0 else left.tensor
+        mean_parts.append(left if left.mass == right.mass else replace(left, mass=mass, tensor=tensor))
+    return mean_parts
+
+
+def _limb(
+    making: Making,
+    chain: LimbChain,
+    parts: Sequence[TreePart],
+    turns: list[tuple[Turn, float]],
+    labels: list[str],
+    note_path: str,
+) -> Limb:
     """Return the left limb: hinges in one point share a link, whose mass is that of the parts up to the next point.
 
     Args:
         making: the draft.
-        chain: parts of the limb.
+        chain: places of the parts in the tree.
+        parts: parts of the limb, with the masses of both sides.
         turns: kind and sign of each hinge.
         labels: name of each hinge without the limb's.
         note_path: place of the limb in the robot's file.
     """
-    parts = [making.plan.tree_part(i) for i in chain.parts]
     stations: list[tuple[np.ndarray, list[tuple[int, Joint]], list[TreePart]]] = []
     number = 0
     for tree_part in parts:
@@ -508,7 +545,7 @@ def _link_name(carried_parts: list[TreePart], number: int, chain: LimbChain, mak
     return tail if separator and tail and has_same_head and unique else f"link_{number + 1}"
 
 
-def _foot(making: Making, parts: list[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
+def _foot(making: Making, parts: Sequence[TreePart], knee: np.ndarray, note_path: str) -> tuple[np.ndarray, float]:
     """Return the foot's centre in the robot's frame [m] and its radius [m].
 
     Args:

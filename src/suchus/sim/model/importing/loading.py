@@ -1,6 +1,7 @@
 """A file of another tool, loaded by MuJoCo with all its joints at zero."""
 
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
@@ -142,8 +143,8 @@ def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[st
         raise UnreadableFile(f"MuJoCo says: {message[:240].rstrip('.')}.") from error
     if meshes.open:
         inertia_remarks += (
-            f"{len(meshes.open)} meshes are no closed surfaces: where a body has no <inertial>, its mass is that of "
-            "the convex hull.",
+            f"{len(meshes.open)} meshes are no closed surfaces, or have more than 200 000 faces: where a body has no "
+            "<inertial>, its mass is that of the convex hull.",
         )
     for name in ("body_pos", "body_quat", "body_mass", "body_ipos", "jnt_axis", "jnt_pos", "jnt_range", "geom_size"):
         if not np.isfinite(getattr(model, name)).all():
@@ -165,13 +166,20 @@ def _balanced(spec: Any) -> tuple[Any, tuple[str, ...]]:
     """Return a compiled model; where a body's inertia is none that a body can have, MuJoCo makes its moments equal."""
     spec.compiler.balanceinertia = False
     try:
-        return spec.compile(), ()
+        return _quietly_compiled(spec), ()
     except ValueError as error:
         spec.compiler.balanceinertia = True
-        model = spec.compile()
+        model = _quietly_compiled(spec)
         body = re.search(r"Element name '([^']*)'", str(error))
         body_text = f"of {body[1]}" if body else "of a body"
         return model, (
             f"The inertia {body_text} is none that a body can have, one principal moment being greater than the sum of "
             "the others; MuJoCo gives all such bodies three equal moments of the same sum.",
         )
+
+
+def _quietly_compiled(spec: Any) -> Any:
+    """Return a compiled model; warnings of MuJoCo on attributes that it will drop say nothing to who wrote none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return spec.compile()

@@ -14,7 +14,7 @@ from suchus.robot.design.layout import LIMB_AXES
 from suchus.robot.design.scale import servo_for, spring_for
 from suchus.robot.design.segment import Point, combine_inertias
 from suchus.sim.model.importing.plan import BodyPlan, LimbChain, Words, links_between
-from suchus.sim.model.importing.tree import Joint, TreePart
+from suchus.sim.model.importing.tree import JOINED, Joint, TreePart
 
 SKEW = 5.0
 """Degrees by which a hinge may miss the robot's axes."""
@@ -247,7 +247,10 @@ class Making:
         Returns:
             None where the file does not say.
         """
-        if not parts or not all(np.any(tree_part.tensor) for tree_part in parts):
+        min_gyration = JOINED * self.size.length  # what rounding leaves of a tensor of zeros is less
+        if not parts or not all(
+            np.abs(tree_part.tensor).max() > tree_part.mass * min_gyration**2 for tree_part in parts
+        ):
             return None
         _, com, tensor = combine_inertias([(tree_part.mass, tree_part.com, tree_part.tensor) for tree_part in parts])
         rotated_tensor = self.plan.plane.turn @ tensor @ self.plan.plane.turn.T

@@ -13,6 +13,7 @@ from suchus.core.reading import NoMeshes, check_file, read_mesh, read_text
 _MANIFEST, _MAX_MANIFEST_SIZE = "package.xml", 2**20  # bytes
 _NAME_ELEMENT = re.compile(r"<name>([^<]*)</name>")
 _MAX_PACKAGE_DEPTH, _MAX_FOLDERS = 4, 5000  # levels and folders that are searched for packages
+_MAX_FACES = 200_000  # of a mesh as STL, by MuJoCo
 _MAX_TOTAL_SIZE = 64 * 2**20  # bytes of all meshes
 _SCHEMES = ("package://", "model://")
 
@@ -71,10 +72,12 @@ class Meshes:
         if not self.shapeless_bodies:
             return
         body, name = next(iter(self.shapeless_bodies.items()))
+        is_found = " is no mesh" in self.read_errors[name]
         others_text = f" and of {len(self.shapeless_bodies) - 1} more" if len(self.shapeless_bodies) > 1 else ""
         raise UnreadableFile(
             f"the shape of {body}{others_text} is a mesh that was not read: {self.read_errors[name]}. "
-            f"{self._advice(name)}, or --without-meshes to have rods in the place of such shapes."
+            f"{'Convert or mend it' if is_found else self._advice(name)}, or say --without-meshes to have rods in "
+            "the place of such shapes."
         )
 
     def _advice(self, name: str) -> str:
@@ -213,9 +216,14 @@ def path_inside(home: Path, name: str) -> Path | None:
 
 
 def _stl(mesh_file: Path, data: bytes) -> tuple[bytes, bool]:
-    """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened."""
+    """Return a mesh as STL, and whether its surface is closed; nothing that it names is opened.
+
+    Of a mesh with more faces than MuJoCo reads from STL it is the convex hull, which counts as not closed.
+    """
     mesh = read_mesh(mesh_file, data)
     try:
+        if len(mesh.faces) > _MAX_FACES:
+            return mesh.convex_hull.export(file_type="stl"), False
         return mesh.export(file_type="stl"), bool(mesh.is_watertight)
     except Exception as error:  # whatever trimesh raises for a mesh that is none
-        raise UnreadableFile(f"{mesh_file.name} is no mesh: {' '.join(str(error).split())[:120]}") from error
+        raise UnreadableFile(f"{mesh_file.name} is no mesh whose surface can be written as STL") from error

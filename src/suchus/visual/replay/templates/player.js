@@ -1,7 +1,7 @@
 // Robots as skinned meshes, what they stand on, and what carries them. World: x forward, z up.
 (() => {
   if (!shared) return;
-  const { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, redraw } = shared;
+  const { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, pace, fineness, redraw } = shared;
   const live = "live" in document.body.dataset; // frames arrive while it plays: no record yet
 
   // ---- vectors and quaternions (wxyz) --------------------------------------------------------------------------
@@ -83,6 +83,20 @@
     gl.enableVertexAttribArray(at);
     gl.vertexAttribPointer(at, size, kind, normalised, 0, 0);
   };
+  const COARSE_CELLS = 60; // in the length of the robot; of the vertices in a cell of space one stays
+  function coarseFaces({ vertices, bones, faces, scale }) { // fewer triangles, for shadows and for slow devices
+    const [places, hung, corners] = [vertices, bones, faces].map(take), cell = meta.size / COARSE_CELLS / scale * 32767;
+    const kept = new Map(), stands = Array.from({ length: places.length / 3 }, (_, i) => {
+      const key = [places[3 * i], places[3 * i + 1], places[3 * i + 2]].map((x) => Math.floor(x / cell)).join() + "," + hung[2 * i];
+      if (!kept.has(key)) kept.set(key, i);
+      return kept.get(key);
+    }), coarse = [];
+    for (let k = 0; k < corners.length; k += 3) {
+      const [a, b, c] = [0, 1, 2].map((i) => stands[corners[k + i]]);
+      if (a !== b && b !== c && c !== a) coarse.push(a, b, c);
+    }
+    return Uint16Array.from(coarse);
+  }
   const skin = { ...meta.skin, array: gl.createVertexArray() };
   gl.bindVertexArray(skin.array);
   buffer(take(skin.vertices)); attribute(0, 3, gl.SHORT, true);
@@ -90,7 +104,11 @@
   buffer(take(skin.colours)); attribute(2, 3, gl.UNSIGNED_BYTE, true);
   buffer(take(skin.bones)); gl.enableVertexAttribArray(3); gl.vertexAttribIPointer(3, 2, gl.UNSIGNED_BYTE, 0, 0);
   buffer(take(skin.weights)); attribute(4, 1, gl.UNSIGNED_BYTE, true);
-  buffer(take(skin.faces), gl.ELEMENT_ARRAY_BUFFER);
+  const coarse = coarseFaces(skin), faces = { fine: { start: 0, count: skin.faces.count }, coarse: { start: 2 * skin.faces.count, count: coarse.length } };
+  const corners = new Uint16Array(skin.faces.count + coarse.length);
+  corners.set(take(skin.faces));
+  corners.set(coarse, skin.faces.count);
+  buffer(corners, gl.ELEMENT_ARRAY_BUFFER);
   const quad = gl.createVertexArray();
   gl.bindVertexArray(quad);
   buffer(new Float32Array([-1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0])); attribute(0, 3, gl.FLOAT, false);
@@ -335,7 +353,8 @@
     gl.uniform4fv(u.uTint, tint);
     gl.uniform4f(u.uFlat, LIGHT[0] / LIGHT[2], LIGHT[1] / LIGHT[2], alpha, flat);
     gl.bindVertexArray(skin.array);
-    gl.drawElements(gl.TRIANGLES, skin.faces.count, gl.UNSIGNED_SHORT, 0);
+    const { start, count } = fineness().fine && !flat ? faces.fine : faces.coarse;
+    gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, start);
   }
   function shadow(now, seen, alpha) {
     gl.enable(gl.STENCIL_TEST);
@@ -378,7 +397,7 @@
       gl.bindVertexArray(relief.array);
       gl.drawArrays(gl.TRIANGLES, 0, relief.count);
       gl.uniform1f(plain.uniforms.uLined, 0);
-    } else now.forEach((one, i) => shadow(one, seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
+    } else if (fineness().shadows) now.forEach((one, i) => shadow(one, seen, (state.dark ? 0.45 : 0.22) / (i + 1)));
     const flat = [], solids = [];
     seenActors.forEach((actor, i) => {
       if (state.tracks) tracks(flat, actor, i > 0);
@@ -426,7 +445,7 @@
   }
   function labels(seen) {
     for (const { mark, at } of marks) put(mark, at, seen);
-    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, i && state.compare === "over" ? 0.22 * bodyLength : 0.16 * bodyLength]), seen, i === 0 || state.compare !== "hidden"));
+    actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, (i && state.compare === "over" ? 0.22 : 0.16) * meta.size]), seen, i === 0 || state.compare !== "hidden"));
   }
   const places = meta.length < 0.5 ? 3 : 2;
   const metres = (v) => `${v.toFixed(places).replace("-", "−")} m`;
@@ -476,5 +495,5 @@
   const flood = (level, up) => { meta.water = level === null ? null : { up }; levels = level === null ? null : new Float32Array([level]); };
   if (live) window.laboratory = { meta, actors, state, append, restart, flood, project, redraw, seek, play,
     attach: (simulate) => { advance = simulate; } };
-  window.suchus = { state, camera, seek, play, up: () => view().up, mass: () => shown && shown.map((one) => one.mass) };
+  window.suchus = { state, camera, pace, faces, seek, play, up: () => view().up, mass: () => shown && shown.map((one) => one.mass) };
 })();

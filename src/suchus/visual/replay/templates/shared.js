@@ -4,7 +4,7 @@ const shared = (() => {
   const $ = (id) => document.getElementById(id);
   const meta = JSON.parse($("meta").textContent);
   const canvas = $("scene");
-  const gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: false, stencil: true, alpha: false, preserveDrawingBuffer: true });
   if (!gl) return null;
 
   const bytes = Uint8Array.from(atob($("data").textContent.trim()), (c) => c.charCodeAt(0));
@@ -39,23 +39,94 @@ const shared = (() => {
   const asked = new URLSearchParams(location.hash.slice(1));
   const state = { playing: !calm && !framed && !asked.has("t"), speed: 1, dark: matchMedia("(prefers-color-scheme: dark)").matches };
 
+  // ---- how finely it is drawn: finely at rest; while it plays, as finely as the device keeps up with -----------------
+  const FINENESS = [ // smooth: edges, in several samples; sharp: at most so many pixels in one of CSS; fine: all triangles
+    { smooth: true, sharp: 2, shadows: true, fine: true }, { smooth: false, sharp: 1.5, shadows: true, fine: true },
+    { smooth: false, sharp: 1, shadows: false, fine: false }, { smooth: false, sharp: 0.6, shadows: false, fine: false }];
+  const MAX_INTERVAL = 1000 / 31, SHORT_INTERVAL = 1000 / 45; // between pictures [ms]: a longer one is too slow, a shorter one leaves time
+  const OWN_FRACTION = 0.6; // of an interval; a page that computes for longer is not slow by drawing
+  const MIN_GAIN = 0.08; // by which a coarser picture shortens the interval, at least
+  const WINDOW = 700, MIN_WAIT = 4000, MAX_WAIT = 64000; // [ms]: over which pictures are timed, and until a finer one is tried
+  const pace = { level: 0, coarsest: FINENESS.length - 1, wait: MIN_WAIT, changed: 0, before: 0, tried: false, from: 0, pictures: 0, own: 0 };
+  const fineness = () => FINENESS[state.playing ? pace.level : 0];
+
+  /** Take the time of one picture into account: the moment [ms] and the time that the page computed before it [ms]. */
+  function keepPace(stamp, own) {
+    if (!pace.from || stamp - pace.from > 4 * WINDOW) return Object.assign(pace, { from: stamp, pictures: 0, own: 0 }); // it begins, or it slept
+    pace.pictures += 1;
+    pace.own += own;
+    const passed = stamp - pace.from;
+    if (passed < WINDOW) return;
+    const interval = passed / pace.pictures, isDrawing = pace.own < OWN_FRACTION * passed;
+    Object.assign(pace, { from: stamp, pictures: 0, own: 0 });
+    const { level, before } = pace;
+    const change = (next, tried) => Object.assign(pace, { level: next, changed: stamp, before: next > level ? interval : 0, tried, from: 0 });
+    if (before && interval > (1 - MIN_GAIN) * before) { pace.coarsest = level - 1; change(level - 1, false); } // coarser was no quicker
+    else if (interval > MAX_INTERVAL && isDrawing && level < pace.coarsest) {
+      if (pace.tried) pace.wait = Math.min(2 * pace.wait, MAX_WAIT); // the finer picture was too slow
+      change(level + 1, false);
+    } else if (interval < SHORT_INTERVAL && level > 0 && stamp - pace.changed > pace.wait) change(level - 1, true);
+    else pace.before = 0;
+  }
+
+  // ---- edges in several samples: drawn into a buffer of its own, so that it can do without ----------------------------
+  const MAX_SAMPLES = 4;
+  let edges = null;
+  function edgeBuffers(wide, high) {
+    if (edges && edges.wide === wide && edges.high === high) return edges;
+    if (edges) {
+      for (const frame of [edges.many, edges.single]) gl.deleteFramebuffer(frame);
+      for (const buffer of edges.buffers) gl.deleteRenderbuffer(buffer);
+    }
+    const samples = Math.min(MAX_SAMPLES, gl.getParameter(gl.MAX_SAMPLES)), buffers = [];
+    const storage = (attachment, format, count) => {
+      const made = gl.createRenderbuffer();
+      buffers.push(made);
+      gl.bindRenderbuffer(gl.RENDERBUFFER, made);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, count, format, wide, high);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, made);
+    };
+    const many = gl.createFramebuffer(), single = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, many);
+    storage(gl.COLOR_ATTACHMENT0, gl.RGBA8, samples);
+    storage(gl.DEPTH_STENCIL_ATTACHMENT, gl.DEPTH24_STENCIL8, samples);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, single);
+    storage(gl.COLOR_ATTACHMENT0, gl.RGBA8, 0);
+    edges = { wide, high, many, single, buffers };
+    return edges;
+  }
+  function showEdges() { // the samples of each pixel become one, then the picture
+    if (!fineness().smooth) return;
+    const { wide, high, many, single } = edges;
+    for (const [from, to] of [[many, single], [single, null]]) {
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
+      gl.blitFramebuffer(0, 0, wide, high, 0, 0, wide, high, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
   // ---- drawing, once when asked, again and again while it plays --------------------------------------------------
   let dirty = true, last = 0, draw, pass; // nothing is drawn before begin
   function tick(stamp) {
     dirty = false;
     if (state.playing) {
+      const began = performance.now();
       if (last) pass(state.speed * Math.min((stamp - last) / 1000, 0.25));
       last = stamp;
+      keepPace(stamp, performance.now() - began);
     }
     draw();
+    showEdges();
     if (state.playing) redraw();
   }
   const redraw = () => { if (!dirty) { dirty = true; requestAnimationFrame(tick); } };
-  const play = (on) => { state.playing = on; last = 0; $("play").textContent = on ? "Pause" : "Play"; redraw(); };
+  const play = (on) => { state.playing = on; last = pace.from = 0; $("play").textContent = on ? "Pause" : "Play"; redraw(); };
   function clear(light, dark) { // fits the picture to the page and returns its background
-    const back = state.dark ? dark : light, sharp = Math.min(devicePixelRatio, 2);
+    const back = state.dark ? dark : light, { smooth, sharp: most } = fineness(), sharp = Math.min(devicePixelRatio, most);
     const wide = Math.round(canvas.clientWidth * sharp), high = Math.round(canvas.clientHeight * sharp);
     if (canvas.width !== wide || canvas.height !== high) { canvas.width = wide; canvas.height = high; }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, smooth ? edgeBuffers(wide, high).many : null);
     gl.viewport(0, 0, wide, high);
     gl.clearColor(...back, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
@@ -121,5 +192,5 @@ const shared = (() => {
     canvas.addEventListener("webglcontextlost", () => { document.body.classList.remove("alive"); state.playing = false; });
   }
 
-  return { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, redraw, play, clear, nearest, begin, hold };
+  return { $, meta, canvas, gl, take, add, cross, dot, unit, program, asked, framed, state, pace, fineness, redraw, play, clear, nearest, begin, hold };
 })();
