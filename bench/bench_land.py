@@ -98,11 +98,12 @@ def environments(count: int, actions: int) -> None:
         data = batch.physics.get_data(run)
         mujoco.mj_getState(batch.model, data, states[run], every)
         warmstart[run] = data.qacc_warmstart
-    loop.advance = kept
+    many = loop.advance_many
+    loop.advance, loop.advance_many = kept, lambda _: None  # one control period after the other, to the same bits
     for _ in range(actions):
         played.append(policy(seen))
         seen = env.step(played[-1])[0]
-    loop.advance = advance
+    loop.advance, loop.advance_many = advance, many
     controls = np.ascontiguousarray(np.swapaxes(commands, 0, 1))
     places = slice(1, 1 + batch.model.nq)  # in a state, after the time
     np.testing.assert_array_equal(rolled(batch.model, states, controls, warmstart)[:, -1, places], batch.qpos)

@@ -4,7 +4,7 @@ Water moves along a wall, nodes a cell apart lie anywhere to it, and all depends
 the slip of the water over the wall from ``u`` to ``(keep + gain) @ u``, with everything in cells, and a ``spread`` of
 viscosity times the step over the cell squared. So the place where the water rests is the solution of a linear system,
 stability an eigenvalue, and friction on a wall that swings to and fro a short run. A wall is a function of the nodes'
-distances and of the spread; ``WALLS`` are those that were compared, and the passage ``walls`` of docs/flow_limits.md
+distances and of the spread; ``WALLS`` are those that were compared, and the passage ``walls`` of docs/flow_trials.md
 has the results.
 """
 
@@ -111,12 +111,17 @@ def _at(distance: np.ndarray, place: float) -> tuple[np.ndarray, float]:
     return out, share * (1 - share)
 
 
-def carried(distance: np.ndarray, spread: float) -> Stage:
+def carried(distance: np.ndarray, spread: float, width: float = 1.0) -> Stage:
     """Immersion, then the parabola through the wall and two places off it in the share that is not the water's.
 
     The parabola takes up that places between nodes are read linearly. A state that is one comes out as it went in.
+
+    Args:
+        distance: signed distances of the nodes, shape (node,) [cells].
+        spread: viscosity times the step over the cell squared [-].
+        width: reach of the kernel to either side of the wall [cells].
     """
-    count, (share, _) = distance.size, _moments(distance)
+    count, (share, _) = distance.size, _moments(distance / width)
     near, bow = _at(distance, NEAR)
     far, bow_far = _at(distance, FAR)
     p, q = NEAR**2 + bow, FAR**2 + bow_far
@@ -127,9 +132,15 @@ def carried(distance: np.ndarray, spread: float) -> Stage:
     return _acting(blend, spread, share)
 
 
+def carried_far(distance: np.ndarray, spread: float) -> Stage:
+    """Return the wall of ``carried`` with a kernel that is twice as wide."""
+    return carried(distance, spread, 2.0)
+
+
 WALLS: dict[str, Wall] = {
     "immersion without an offset": immersed, "today's: immersion with an offset": of_today,
     "immersion of increments": of_increments, "cut cells, merged": cut_cells, "parabola carried to the wall": carried,
+    "parabola carried to the wall, kernel twice as wide": carried_far,
 }  # fmt: skip
 """The walls that were compared, by name."""
 

@@ -38,6 +38,7 @@ WRITERS: Mapping[str, str] = {
     "atlas": "tools/atlas_page.py",
     "league": "tools/league_page.py",
     "validation": "tools/validation_page.py",
+    "verdicts": "tools/verdict_table.py",
 }
 """Pages that a program writes whole, and the program."""
 REASONS: Mapping[str, str] = {

@@ -1,8 +1,9 @@
 """Put what a full ``suchus reproduce`` found into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, keeps the result
-``verdicts``, and writes docs/verdicts.md and the summary of the README. With ``--part`` OUT may hold some experiments only: of the others
-what the documentation keeps is judged by the rules of today, and the other rows stay.
+``verdicts``, and writes docs/verdicts.md and the summary of the README. With ``--part``
+OUT may hold some experiments only: of the others what the documentation keeps is judged by the rules of today, and the
+other rows stay.
 """
 
 import json

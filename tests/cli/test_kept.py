@@ -18,7 +18,7 @@ origin = sys.modules["suchus.core.files.provenance"]
 
 @pytest.fixture(scope="module")
 def first(tmp_path_factory):
-    task = ExperimentTask(name="working_space", out=tmp_path_factory.mktemp("out"), quick=True)
+    task = ExperimentTask(name="leg_kinematics", out=tmp_path_factory.mktemp("out"), quick=True)
     assert isinstance(attempt(task, silent).result, Result)
     return task
 

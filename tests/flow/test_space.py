@@ -433,7 +433,6 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
             "a shape in space, and the grid has two axes",
         ),
         (lambda: flow.FreeBody(shape=1.0), "a Shape or a SpaceShape is needed"),
-        (lambda: ball(contact=flow.BodyContact(gap=0.1, pressure=1.0)), "contact acts between plane outlines"),
         (
             lambda: ball(mirrors=(False, False, True)).control(0.1),
             "a mirror cuts body, and a control volume goes all around bodies",

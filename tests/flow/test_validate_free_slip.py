@@ -2,7 +2,7 @@
 
 ``free_slip`` says how the wall is made. It is stable, and right where the water stays attached: a towed spheroid's drag
 is its friction. It is no flow around the swimming robot, whose round sections go to and fro by many of their heights:
-there a real layer leaves the skin, and a wall without a layer never lets it. docs/flow_limits.md has the numbers.
+there a real layer leaves the skin, and a wall without a layer never lets it. docs/flow_trials.md has the numbers.
 """
 
 from unittest.mock import patch

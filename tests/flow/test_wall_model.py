@@ -8,6 +8,7 @@ from suchus.flow.immerse import wall_offset
 
 TODAY = WALLS["today's: immersion with an offset"]
 CARRIED = WALLS["parabola carried to the wall"]
+WIDE = WALLS["parabola carried to the wall, kernel twice as wide"]
 
 
 @pytest.mark.parametrize("spread", [0.001, 0.01, 0.03, 0.1, 0.2])
@@ -40,6 +41,15 @@ def test_the_carried_wall_rubs_as_the_exact_one_and_the_better_the_thicker_the_l
     errors = [max(abs(friction(CARRIED, place, 0.1, layer) - 1) for place in PLACES[::5]) for layer in (2, 4)]
     assert errors[0] < 0.06
     assert errors[0] > 2.5 * errors[1]
+
+
+def test_a_wider_kernel_under_the_parabola_shakes_less_and_rubs_less_exactly():
+    """It rests at the wall too; friction depends less on where nodes lie, and its phase is three times as far off."""
+    assert max(abs(rest(WIDE, place, 0.05)) for place in PLACES[::4]) < 1e-3
+    rubbed, wide = (np.array([friction(wall, place, 0.1, 2.0) for place in PLACES[::4]]) for wall in (CARRIED, WIDE))
+    assert np.ptp(np.abs(wide)) < 0.4 * np.ptp(np.abs(rubbed))
+    assert np.abs(wide - 1).max() > 2 * np.abs(rubbed - 1).max()
+    assert max(growth(WIDE, place, 0.2) for place in PLACES[::4]) < 1
 
 
 def test_merged_cells_need_a_shorter_step_than_the_others():

@@ -1,7 +1,7 @@
 """Links of the pages: in the repository they lead to what stands there, in the built site to the pages made of it.
 
-A page links to ``../src/suchus/article/paper/errata.py``, ``../examples/04_kinematics.py`` or ``../src/suchus/sim/metrics``.
-A reader of the unbuilt page can open them all; the site has a page made of each.
+A page links to ``../src/suchus/article/paper/errata.py``, ``../examples/04_kinematics.py`` or
+``../src/suchus/sim/metrics``. A reader of the unbuilt page can open them all; the site has a page made of each.
 """
 
 import re

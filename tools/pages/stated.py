@@ -30,7 +30,7 @@ from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import RULES, UNRULED, count_evidence
+from suchus.experiments.claims import RULES, UNRULED
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"

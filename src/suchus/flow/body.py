@@ -62,8 +62,12 @@ SYMMETRY_TOLERANCE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
 
 
-def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple[bool, ...] = ()) -> Window:
-    """Return the cells around a body that it acts on; a cell beyond a mirror that cuts the body is one of them.
+def window_of(
+    body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple[bool, ...] = (), solids: tuple[bool, ...] = ()
+) -> Window:
+    """Return the cells around a body that it acts on.
+
+    A cell beyond a mirror that cuts the body is one of them, and so is a cell beyond a wall that the body comes near.
 
     Args:
         body: the body.
@@ -72,27 +76,35 @@ def window_of(body: AnyBody, pose: Pose, grid: Grid, time: float, mirrors: tuple
         time: time [s].
         mirrors: whether there is a mirror at the low and at the high end of each axis; see ``Sides.has_mirror``. Empty:
             there are none.
+        solids: whether there is a wall at these ends; see ``Sides.is_solid``. Empty: there are none.
 
     Raises:
-        InvalidDesign: the body touches a side of the domain or lies beyond it, or a mirror does not cut it in half.
+        InvalidDesign: the body comes near to an open side of the domain, lies beyond a wall, or a mirror does not cut
+            it in half.
     """
     bounds = body.shape.bounds(time, pose)
     ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
-    mirrors, window = mirrors or (False,) * (2 * grid.ndim), []
+    mirrors, solids = (kinds or (False,) * (2 * grid.ndim) for kinds in (mirrors, solids))
+    window = []
     for d in reversed(range(grid.ndim)):
         (lower_bound, upper_bound), start, end = ends[d], grid.origin[d], grid.origin[d] + grid.size[d]
         end_cuts = (
             mirrors[2 * d] and lower_bound < start < upper_bound,
             mirrors[2 * d + 1] and lower_bound < end < upper_bound,
         )
-        if not ((end_cuts[0] or lower_bound - margin > start) and (end_cuts[1] or upper_bound + margin < end)):
+        is_far = lower_bound - margin > start, upper_bound + margin < end
+        is_beside = (
+            not is_far[0] and solids[2 * d] and upper_bound > start,
+            not is_far[1] and solids[2 * d + 1] and lower_bound < end,
+        )
+        if not all(cut or far or beside for cut, far, beside in zip(end_cuts, is_far, is_beside, strict=True)):
             raise _out_of_grid_error(body, grid, ends, time)
         for plane in [plane for plane, is_cut in zip((start, end), end_cuts, strict=True) if is_cut]:
             check_cut(body, pose, d, plane, h, time)
         end_cell = min(int((upper_bound + margin - start) / h) + 2, grid.cells[d])
         window += [
-            PAD - 1 if end_cuts[0] else int((lower_bound - margin - start) / h) + PAD,
-            PAD + (grid.cells[d] + 1 if end_cuts[1] else end_cell),
+            PAD - 1 if end_cuts[0] or is_beside[0] else int((lower_bound - margin - start) / h) + PAD,
+            PAD + (grid.cells[d] + 1 if end_cuts[1] or is_beside[1] else end_cell),
         ]
     return tuple(window)
 
@@ -116,7 +128,8 @@ def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]
     )
     return InvalidDesign(
         f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the grid {domain} "
-        f"(less {(REACH + 2) * grid.cell:.2g} m on each side); enlarge the grid, or let it follow the body."
+        f"(less {(REACH + 2) * grid.cell:.2g} m on each open side); enlarge the grid, let it follow the body, or make "
+        f"the side a Wall() or a Slip(), to which a body may come near."
     )
 
 
@@ -160,11 +173,25 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
         )
 
 
-def cuts(window: Window, grid: Grid) -> tuple[bool, ...]:
-    """Return whether a mirror cuts the bodies of a window at the low and at the high end of each axis."""
+def reaches_beyond(window: Window, grid: Grid) -> tuple[bool, ...]:
+    """Return whether a window reaches beyond the grid, at the low and at the high end of each axis.
+
+    It does where a mirror cuts a body, and where a body is near to a wall.
+    """
     ends = list(zip(window[::2], window[1::2], strict=True))[::-1]
     pairs = [(start < PAD, stop > n + PAD) for (start, stop), n in zip(ends, grid.cells, strict=True)]
     return tuple(end for pair in pairs for end in pair)
+
+
+def cuts(window: Window, grid: Grid, mirrors: tuple[bool, ...]) -> tuple[bool, ...]:
+    """Return whether a mirror cuts the bodies of a window at the low and at the high end of each axis.
+
+    Args:
+        window: the window.
+        grid: the grid.
+        mirrors: whether there is a mirror at these ends; see ``Sides.has_mirror``.
+    """
+    return tuple(beyond and mirror for beyond, mirror in zip(reaches_beyond(window, grid), mirrors, strict=True))
 
 
 def unite(windows: list[Window], ndim: int) -> Window:

@@ -376,6 +376,18 @@ class Border:
         self.stream = tuple(state["stream"].tolist())
         self.steps, self.last_step = int(state["prepared"][0]), float(state["prepared"][1])
 
+    def wall_velocity(self, axis: int, *, is_low: bool) -> tuple[float, ...] | None:
+        """Return the velocity of a wall along every axis, 0 across itself [m/s]; None without friction.
+
+        Args:
+            axis: axis across which the wall lies.
+            is_low: whether it is at the low end of the axis.
+        """
+        edge = next(e for e in self.edges if e.axis == axis and e.is_lower_side == is_low)
+        if edge.wall_velocity is None:
+            return None
+        return (*edge.wall_velocity[:axis], 0.0, *edge.wall_velocity[axis:])
+
     def fastest(self, time: float) -> float:
         """Return the fastest speed that a side itself imposes at a time, a wall or an inflow [m/s]."""
         return max((edge.fastest(time) for edge in self.edges), default=0.0)

@@ -70,7 +70,7 @@ class Setup:
     bodies: tuple[Body | FreeBody, ...] = ()
     """The bodies in the water."""
     contact: BodyContact | None = None
-    """Force between bodies that nearly touch; None lets them overlap."""
+    """Force between bodies that nearly touch, and between a body and a wall; None lets them run into each other."""
     follow: str | None = None
     """Name of the body with whose centre the grid travels; None fixes the grid."""
     follow_axes: tuple[bool, bool] | tuple[bool, bool, bool] = (True, True)
@@ -167,8 +167,6 @@ class Setup:
                 f"{body.name} is a {shape}, which is a shape in space, and the grid has two axes; give the grid a "
                 f"third pair, or a plane shape."
             )
-        if ndim == 3 and self.contact is not None:
-            raise InvalidDesign("contact acts between plane outlines, and the grid has three axes; leave it None.")
 
     def _check_passage(self) -> None:
         """Refuse a far stream through a side through which no water passes.
@@ -269,18 +267,18 @@ class Setup:
         for body in self.bodies:
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
             pose = pose.in_dimensions(self.grid.ndim)
-            window = window_of(body, pose, self.grid, 0.0, self._mirrors)
+            window = window_of(body, pose, self.grid, 0.0, *self._closed_ends)
             if isinstance(body, FreeBody):
-                self._check_weight(body, cuts(window, self.grid))
+                self._check_weight(body, cuts(window, self.grid, self._closed_ends[0]))
             thin_fractions[body.name] = thin_fraction(body, self.grid, 0.0)
             self.layer_error(body, body.shape.markers(0.0, pose, self.grid.cell), self.far_velocity(0.0), 0.0)
         return thin_fractions
 
     @property
-    def _mirrors(self) -> tuple[bool, ...]:
-        """Whether there is a mirror at the ends of the axes of ``grid``; see ``Sides.has_mirror``."""
+    def _closed_ends(self) -> tuple[tuple[bool, ...], tuple[bool, ...]]:
+        """Whether there are mirrors, and walls, at the ends of the axes of ``grid``; see ``Sides``."""
         sides = self.sides if self.coarse_grid is None else patch_sides(self.grid, self.coarse_grid, self.sides)
-        return sides.has_mirror(self.grid.ndim)
+        return sides.has_mirror(self.grid.ndim), sides.is_solid(self.grid.ndim)
 
     def _check_weight(self, body: FreeBody, mirror_cuts: tuple[bool, ...]) -> None:
         """Refuse gravity that would move a body through a mirror that cuts it.

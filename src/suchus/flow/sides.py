@@ -266,6 +266,17 @@ class Sides:
         """Return whether there is a mirror at the low and at the high end, along each axis: ``NAMES``."""
         return tuple(isinstance(side, Mirror) for side in self.of_axes(ndim))
 
+    def is_solid(self, ndim: int) -> tuple[bool, ...]:
+        """Return whether a body may come near to a side, along each axis: ``NAMES``.
+
+        It may to walls with and without friction, beyond which the water's velocity is known. A mirror is none, because
+        it may cut bodies.
+        """
+        return tuple(
+            side.is_domain_end and not side.is_permeable and not isinstance(side, Periodic | Mirror)
+            for side in self.of_axes(ndim)
+        )
+
     def is_fixed(self, ndim: int) -> tuple[tuple[bool, bool], ...]:
         """Return whether the positions of the low and the high side are fixed, along each axis.
 

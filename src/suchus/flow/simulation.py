@@ -125,6 +125,7 @@ class Simulation(Fields):
             for c, component in enumerate(layer.velocity):
                 component[:] = setup.initial_velocity(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
+        self._walls = contact.wall_planes(setup.sides, setup.coarse_grid or setup.grid)
         self._is_placed = False
         self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
@@ -148,6 +149,7 @@ class Simulation(Fields):
             if isinstance(body, FreeBody) and body.free is None:
                 self.swimmers[body.name].is_free &= np.array(symmetric(mirror_cuts))
         self._log.store_contents(self.water, outlines)
+        self._refuse_passage(outlines, 0.0)
         self._watch.inputs()
         self._watch.layers(
             [setup.layer_error(b, m, stream, 0.0) for b, m in zip(self._bodies, outlines, strict=True)]
@@ -262,7 +264,7 @@ class Simulation(Fields):
             dt: length of the step that the speeds allow [s].
             courant: that part [-].
         """
-        max_distance = courant * self.setup.grid.cell
+        max_distance, contacts = courant * self.setup.grid.cell, self._contacts(dt)
         for name, swimmer in self.swimmers.items():
             if self.setup.contact is None and not swimmer.is_pushed(self.setup.density):
                 continue  # the water alone moves it, and its speed bounds the step
@@ -271,7 +273,7 @@ class Simulation(Fields):
                 travels = (*self.setup.follow_axes, False)[: self.ndim]
                 relative_to = np.where(travels, self.setup.far_velocity(self.time), relative_to)
             dt = swimmer.max_step(
-                self.time, dt, self.setup.density, self._contacts(dt).get(name), relative_to, self._reaches[name],
+                self.time, dt, self.setup.density, contacts.get(name), relative_to, self._reaches[name],
                 max_distance,
             )  # fmt: skip
         return dt
@@ -355,6 +357,7 @@ class Simulation(Fields):
         if moving:
             cell = self.setup.grid.cell
             self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self._bodies, poses, strict=True)]
+            self._refuse_passage(self._outlines, time)
         markers = self._outlines
         self._watch.layers(
             [
@@ -389,9 +392,65 @@ class Simulation(Fields):
             half_step = 0.5 * dt
             outlines.append(replace(outline, points=outline.points + half_step * outline.velocities))
             swimmer = self.swimmers.get(body.name)
-            centres.append(np.zeros(2) if swimmer is None else swimmer.coordinates[:2] + half_step * swimmer.rate[:2])
-        contact_forces = contact.forces(setup.contact, outlines, centres)
+            centres.append(
+                np.zeros(self.ndim)
+                if swimmer is None
+                else swimmer.coordinates[: self.ndim] + half_step * swimmer.rate[: self.ndim]
+            )
+        contact_forces = contact.forces(setup.contact, outlines, centres, self._walls)
         return dict(zip([b.name for b in self._bodies], contact_forces, strict=True))
+
+    def _refuse_passage(self, outlines: Sequence[Markers], time: float) -> None:
+        """Refuse a body that has gone through a wall, and warn of one that is too near to it.
+
+        Args:
+            outlines: outlines or skins of the bodies, in the frame of the grid.
+            time: time, for the message [s].
+
+        Raises:
+            InvalidDesign: naming body, wall and remedy.
+        """
+        cell = self.setup.grid.cell
+        for wall in self._walls:
+            for body, outline in zip(self._bodies, outlines, strict=True):
+                clearance = float(wall.distances(outline.points).min())
+                if clearance < -contact.MAX_WALL_DEPTH * cell:
+                    raise InvalidDesign(self._passage_text(body, outline, wall, -clearance, time))
+                if clearance < contact.MIN_WALL_CLEARANCE * cell:
+                    self._watch.clearance(body, wall, clearance, time)
+
+    def _passage_text(
+        self, body: AnyBody, outline: Markers, wall: contact.WallPlane, depth: float, time: float
+    ) -> str:  # fmt: skip
+        """Return the message about a body that has gone through a wall.
+
+        Args:
+            body: the body.
+            outline: its outline or skin, in the frame of the grid.
+            wall: the wall.
+            depth: how far it lies beyond the wall [m].
+            time: time [s].
+        """
+        speed = float(-wall.inward * outline.velocities[wall.axis].mean())
+        text = (
+            f"at t = {time:.4g} s {body.name} lies {depth:.3g} m deep in the {wall.name} side, a "
+            f"{type(getattr(self.setup.sides, wall.name)).__name__} at {'xyz'[wall.axis]} = {wall.position:.6g} m, and "
+            f"moves into it with {speed:.3g} m/s"
+        )
+        if body.name not in self.swimmers:
+            return f"{text}: give a motion that stays in the water, or enlarge the grid."
+        law, cell = self.setup.contact, self.setup.grid.cell
+        gap = 2.5 * cell if law is None else law.gap
+        tangential = [float(np.ptp(line)) for d, line in enumerate(outline.points) if d != wall.axis]
+        weight = abs(self.swimmers[body.name].applied[wall.axis]) if law is None else 0.0
+        mass = (body.density or self.setup.density) * body.shape.mass(time).size  # type: ignore[union-attr]
+        needed = (1.5 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
+        if law is not None:
+            needed = max(needed, 4 * law.pressure)
+        return (
+            f"{text}: give contact=BodyContact(gap={gap:.3g}, pressure={needed:.2g})"
+            f"{'' if law is None else f', whose pressure is now {law.pressure:.3g} Pa'}."
+        )
 
     def _torque_point(self, name: str, pose: Pose) -> tuple[float, ...]:
         """Return the reference point of a body's torque in the frame of the grid [m]."""

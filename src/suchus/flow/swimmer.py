@@ -277,7 +277,7 @@ class Swimmer:
             time: start of the step [s].
             dt: length of the step [s].
             water_density: density of the water [kg/m^3].
-            contact: force and torque of other bodies that nearly touch, shape (3,) [N/m, N].
+            contact: force and torque of bodies and walls that nearly touch, shape (degree,) [N/m, N; in space N, N m].
 
         Raises:
             InvalidDesign: the body's own force is not three or six finite numbers.

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from suchus.flow.body import reaches_beyond
 from suchus.flow.markers import Markers
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.water import Fluid
@@ -97,16 +98,22 @@ class HeldFaces(NamedTuple):
 def held_faces(water: Fluid) -> list[HeldFaces]:
     """Return the faces that belong to the bodies at least in part, one entry for each axis.
 
-    Faces beyond mirrors are left out.
+    Faces beyond mirrors and walls are left out, and so are those on a wall, through which nothing moves.
     """
     window, ndim, grid, faces = water.window_slices, water.ndim, water.grid, []
     is_inside = np.ones([s.stop - s.start for s in window], bool)
-    for mirror_cuts in water.mirror_cuts:
-        clear_images(is_inside, mirror_cuts)
+    clear_images(is_inside, reaches_beyond(water.window, water.grid))
+    walls = [
+        is_beyond and is_solid
+        for is_beyond, is_solid in zip(reaches_beyond(water.window, grid), water.sides.is_solid(ndim), strict=True)
+    ]
     ends = [(s.start, s.stop) for s in reversed(window)]
     for c in range(ndim):
         body_fraction, closed = (1 - fraction[c][window].astype(np.float64) for fraction in (water.mu0, water.passage))
-        index = np.flatnonzero(((body_fraction > 0) | (closed > 0)) & is_inside)
+        is_counted = ((body_fraction > 0) | (closed > 0)) & is_inside
+        if walls[2 * c]:
+            np.moveaxis(is_counted, ndim - 1 - c, 0)[1] = False
+        index = np.flatnonzero(is_counted)
         lines = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(ndim)]
         places = np.unravel_index(index, body_fraction.shape)
         points = np.stack([lines[d][places[ndim - 1 - d]] for d in range(ndim)])

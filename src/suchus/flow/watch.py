@@ -6,7 +6,9 @@ from warnings import warn
 import numpy as np
 
 from suchus.core.errors import Doubtful
+from suchus.flow.body import AnyBody
 from suchus.flow.compiled import PAD
+from suchus.flow.contact import WallPlane
 from suchus.flow.immerse import REACH
 from suchus.flow.plausibility import heading_text, implausible_inputs
 from suchus.flow.pose import length
@@ -123,6 +125,28 @@ class Watch:
         if text is not None:
             self._say(f"overlap {water.overlap.bodies}", text)
 
+    def clearance(self, body: AnyBody, wall: WallPlane, clearance: float, time: float) -> None:
+        """Warn of a body so near to a wall that the grid does not resolve the water between them.
+
+        Args:
+            body: the body.
+            wall: the wall.
+            clearance: distance between them [m].
+            time: time, for the message [s].
+        """
+        cell = self.setup.grid.cell
+        remedy = (
+            f"Give contact=BodyContact(gap={2.5 * cell:.3g}, pressure=...)"
+            if self.setup.contact is None
+            else "Raise the pressure of the contact"
+        )
+        self._say(
+            f"clearance {body.name} {wall.name}",
+            f"at t = {time:.4g} s {body.name} is {clearance:.3g} m or {clearance / cell:.2g} cells from the "
+            f"{wall.name} side: nearer than one cell the grid does not resolve the water between them, and forces are "
+            f"too small. {remedy}, or take finer cells.",
+        )
+
     def sides(self, water: Fluid, time: float) -> None:
         """Warn of vortices at a side that is fixed to the far stream although the vortices should move it.
 
@@ -173,7 +197,10 @@ class Watch:
         self._carried = self._carried + stream * (time - self._carried_time)
         self._carried_time = time
         far = float(np.linalg.norm(self._carried))
-        spans = [(window[2 * d] - PAD + margin, window[2 * d + 1] - PAD - margin) for d in reversed(range(ndim))]
+        spans = [  # beside a wall the window ends there
+            (start - PAD + margin if start >= PAD else 0, stop - PAD - margin if stop <= n + PAD else n)
+            for start, stop, n in zip(window[-2::-2], window[::-2], water.grid.cells, strict=True)
+        ]
         for edge in water.border.edges:
             if edge.convective_weight < 0.5:
                 continue

@@ -14,7 +14,7 @@ import numpy as np
 from suchus.core.errors import NotConverged
 from suchus.flow import multigrid, patch, poisson
 from suchus.flow.advect import advance_by
-from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, rows_of, unite, window_of
+from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, reaches_beyond, rows_of, unite, window_of
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
@@ -305,9 +305,9 @@ class Fluid:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        mirrors = self.sides.has_mirror(self.ndim)
-        windows = [window_of(b, p, self.grid, time, mirrors) for b, p in zip(bodies, poses, strict=True)]
-        self.mirror_cuts, new = [cuts(window, self.grid) for window in windows], unite(windows, self.ndim)
+        mirrors, solids = self.sides.has_mirror(self.ndim), self.sides.is_solid(self.ndim)
+        windows = [window_of(b, p, self.grid, time, mirrors, solids) for b, p in zip(bodies, poses, strict=True)]
+        self.mirror_cuts, new = [cuts(window, self.grid, mirrors) for window in windows], unite(windows, self.ndim)
         self._clear(old)
         old_velocity = self.b
         self._set_window(new)
@@ -545,7 +545,7 @@ class Fluid:
         )
         if self.window[1] > self.window[0]:
             self._clear_raw_on_sides()
-            self._mirror_raw()
+            self._extend_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             for c in range(self.ndim):
                 immerse(
@@ -564,13 +564,18 @@ class Fluid:
             if not repeats and self.window[2 * axis] <= PAD:
                 np.moveaxis(self._raw[c], axis, 0)[PAD - self.window[2 * axis]] = 0
 
-    def _mirror_raw(self) -> None:
-        """Fill the bare update beyond the mirrors that cut bodies with its mirror image."""
-        for k, is_cut in enumerate(cuts(self.window, self.grid)):
-            if not is_cut:
+    def _extend_raw(self) -> None:
+        """Fill the bare update beyond the mirrors that cut bodies, and beyond the walls beside bodies.
+
+        Beyond a mirror and a wall without friction it is the mirror image. Beyond a wall with friction the velocity
+        along it is that whose mean with the image is the wall's.
+        """
+        for k, is_beyond in enumerate(reaches_beyond(self.window, self.grid)):
+            if not is_beyond:
                 continue
             axis, is_low = k // 2, k % 2 == 0
             start = self.window[2 * (self.ndim - 1 - axis)]
+            wall_velocity = self.border.wall_velocity(axis, is_low=is_low)
             for c, component in enumerate(self._raw):
                 planes = np.moveaxis(component, self.ndim - 1 - axis, 0)
                 n = self.grid.cells[axis] + PAD - start
@@ -580,7 +585,7 @@ class Fluid:
                     planes[face], planes[image] = 0, -planes[source]
                 else:
                     image, source = (PAD - 1 - start, PAD - start) if is_low else (n, n - 1)
-                    planes[image] = planes[source]
+                    planes[image] = planes[source] if wall_velocity is None else 2 * wall_velocity[c] - planes[source]
 
     def _collect(self, stage: PlannedStage, weight: float) -> None:
         """Add the momentum and energy that the immersion gave to the water in a stage to ``immersion_sums``.
@@ -663,7 +668,7 @@ class Fluid:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
             for c, owner in enumerate(self.owners):
                 add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near_layout, self.inner)
-            for k, is_cut in enumerate(cuts(self.window, self.grid)):
+            for k, is_cut in enumerate(cuts(self.window, self.grid, self.sides.has_mirror(self.ndim))):
                 if is_cut:
                     self._add_half_faces(sums, k // 2, is_low=k % 2 == 0)
         return sums

@@ -22,7 +22,7 @@ _MAX_REPEATED = 0.5  # greatest fraction of frames in which a foot is exactly wh
 _MIN_HEIGHT = 0.03  # [extent of the feet]; a trunk that is nearer to the surface does not show its side
 
 
-class Surface(NamedTuple):
+class ClimbedSurface(NamedTuple):
     """Tracks over a level surface."""
 
     tracks: Tracks
@@ -33,20 +33,20 @@ class Surface(NamedTuple):
     """How the animal walks, and what lengths and heights count from; empty on level ground."""
 
 
-def level_surface(tracks: Tracks) -> Surface:
+def level_surface(tracks: Tracks) -> ClimbedSurface:
     """Return tracks over a level surface: turned if feet and trunk show that it slopes, stands or hangs.
 
     Args:
         tracks: with heights, or seen from the side; those from above show no slope and are returned as they are.
     """
     if tracks.view == "top" and not tracks.has_heights:
-        return Surface(tracks, 0.0, ())
+        return ClimbedSurface(tracks, 0.0, ())
     normal = _surface_normal(tracks)
     if normal is None:
-        return Surface(tracks, 0.0, ())
+        return ClimbedSurface(tracks, 0.0, ())
     slope = float(np.arccos(np.clip(normal[-1], -1.0, 1.0)))
     if slope <= MAX_LEVEL_SLOPE:
-        return Surface(tracks, 0.0, ())
+        return ClimbedSurface(tracks, 0.0, ())
     position = tracks.position @ _turn_to_last_axis(normal).T
     degrees = round(np.degrees(slope))
     axis = "y" if tracks.view == "side" else "z"
@@ -59,7 +59,7 @@ def level_surface(tracks: Tracks) -> Surface:
         f"the feet show that the animal {posture}: lengths, heights and sides are those over that surface; weight does "
         "not act across it as on the ground"
     )
-    return Surface(replace(tracks, position=position), slope, (note,))
+    return ClimbedSurface(replace(tracks, position=position), slope, (note,))
 
 
 def _surface_normal(tracks: Tracks) -> Float[np.ndarray, " axis"] | None:

@@ -555,6 +555,8 @@ def _arrays(path: Path, data: bytes) -> dict[str, np.ndarray]:
                 raise UnreadableFile(f"{path} unpacks to more than {_MAX_ARRAY_SIZE / 1e6:g} MB; a policy has less.")
         with np.load(io.BytesIO(data), allow_pickle=False) as loaded:
             return {name: loaded[name] for name in loaded.files}
+    except UnreadableFile:
+        raise
     except ValueError as error:
         if "pickle" in str(error) or "Object" in str(error):
             raise UnreadableFile(
@@ -562,8 +564,6 @@ def _arrays(path: Path, data: bytes) -> dict[str, np.ndarray]:
                 "that suchus train wrote."
             ) from error
         raise UnreadableFile(_DAMAGED.format(path)) from error
-    except UnreadableFile:
-        raise
     except (zipfile.BadZipFile, OSError, EOFError, KeyError, NotImplementedError, zipfile.LargeZipFile) as error:
         raise UnreadableFile(_DAMAGED.format(path)) from error
     except Exception as error:  # zlib.error and whatever else damaged bytes raise
@@ -649,7 +649,7 @@ def _finite(array: np.ndarray) -> np.ndarray:
     """Return an array of numbers; refuse one that has others."""
     numbers = np.asarray(array, dtype=float)
     if not np.isfinite(numbers).all():
-        raise ValueError("it has numbers that are not finite")
+        raise InvalidDesign("it has numbers that are not finite; train it again, or take another copy.")
     return numbers
 
 

@@ -60,6 +60,8 @@ class SwimSetting:
     cells the force has the least noise; with 0 the body stays as it is."""
     beside: float = MARGIN_BESIDE
     """In space: water beside the widest swing, to each side [body length]."""
+    behind: float = MARGIN_BEHIND
+    """In space: water behind the tail [body length]."""
     tail_height: float = 0.0
     """In space: height of the last third of the body, as a fin as thick as the tail is; 0 leaves it as it is [m]."""
     limbs: bool = False
@@ -77,10 +79,11 @@ class SwimSetting:
             check.number("viscosity", 1e-7, 10.0, "m2/s")
             check.number("blunt", 0.0, 5.0, "cells")
             check.number("beside", 0.0, 3.0, "body lengths")
+            check.number("behind", 0.2, 5.0, "body lengths")
             check.number("tail_height", 0.0, 1.0, "m")
             if self.tolerance is not None:
                 check.number("tolerance", 5e-7, 1e-2, "")
-            foreign_fields = ("box", "blunt") if self.axes == 3 else ("beside", "tail_height", "limbs")
+            foreign_fields = ("box", "blunt") if self.axes == 3 else ("beside", "behind", "tail_height", "limbs")
             changed_fields = [name for name in foreign_fields if getattr(self, name) != _default(name)]
             kind = "a slice" if self.in_space else "a body in space"
             check.that(
@@ -141,7 +144,7 @@ class SwimSetting:
         """
         half_width = reach + (_DRIFT_MARGIN + self.beside) * length
         return flow.Grid.covering(
-            (-MARGIN_AHEAD * length, (1.0 + MARGIN_BEHIND) * length),
+            (-MARGIN_AHEAD * length, (1.0 + self.behind) * length),
             (-half_width, half_width),
             (-half_width, half_width),
             cell=length / self.cells,
@@ -151,7 +154,7 @@ class SwimSetting:
         """Return the cells around the upper half of a body."""
         lateral_reach, top = swing / length + _DRIFT_MARGIN, height / length + MARGIN_ABOVE
         grid = flow.Grid.covering(
-            (-MARGIN_AHEAD * length, (1.0 + MARGIN_BEHIND) * length),
+            (-MARGIN_AHEAD * length, (1.0 + self.behind) * length),
             (-(lateral_reach + self.beside) * length, (lateral_reach + self.beside) * length),
             (0.0, top * length),
             cell=length / self.cells,

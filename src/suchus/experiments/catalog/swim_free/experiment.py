@@ -98,7 +98,6 @@ class SwimFree(Experiment):
         "speed_whole",
         "speed_trunk_only",
         "speed_tail_only",
-        "speed_tail_only_stiff",
         "turn_radius",
         "servo_power",
     )
