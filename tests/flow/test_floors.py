@@ -1,9 +1,10 @@
-"""Bodies near walls: added mass, and the flow of a body and its mirror image."""
+"""Bodies near walls: added mass, the flow of a body and its mirror image, the film of water, and contact."""
 
 import numpy as np
 import pytest
 
 from suchus import flow
+from suchus.flow import contact
 from suchus.flow.sides import NAMES
 
 CIRCLE = flow.Cylinder(diameter=1.0)
@@ -78,3 +79,79 @@ def test_beside_a_wall_without_friction_there_is_the_flow_of_two_bodies(gap):
     for column in ("force_x", "force_y", "torque"):
         values = whole.column(column, "1")
         assert half.column(column, "1") == pytest.approx(values, abs=3e-3 * np.abs(values).max() + 1e-6), column
+
+
+def squeezed(gap, *, cells=16, along=False):
+    """Force on a circle that moves slowly to a wall, or along it, over the exact one of Stokes flow [-].
+
+    Jeffrey and Onishi 1981, Q. J. Mech. Appl. Math. 34, 129-137. The gap is in cells.
+    """
+    cell, speed, viscosity = 1 / cells, 1e-3, 1.0
+    height = 0.5 + gap * cell
+    sides = flow.Sides(bottom=flow.Wall())
+    grid = flow.Grid.covering((-2.0, 2.0), (0.0, 3.0), cell=cell, sides=sides)
+    velocity = (speed, 0.0) if along else (0.0, -speed)
+
+    def motion(time):
+        return flow.Pose(position=(velocity[0] * time, height + velocity[1] * time), velocity=velocity)
+
+    body = flow.Body(shape=CIRCLE, motion=motion)
+    setup = flow.Setup(grid=grid, viscosity=viscosity, bodies=(body,), sides=sides, courant=1.0)
+    record = flow.Simulation(setup).run(0.25, progress=False)
+    alpha = np.arccosh(height / 0.5)
+    exact = 4 * np.pi * viscosity * speed / (alpha if along else alpha - np.tanh(alpha))
+    return float(np.hypot(*record.force()[-20:].mean(axis=0)) / exact)
+
+
+def test_the_film_below_a_body_that_comes_down_is_resolved_down_to_two_cells():
+    """Lubrication as the grid resolves it: the force on a circle that is moved towards a wall."""
+    assert squeezed(4.0) == pytest.approx(1.0, abs=0.15)
+    assert squeezed(2.0) == pytest.approx(1.0, abs=0.3)
+
+
+# --- contact ---------------------------------------------------------------------------------------------------
+
+
+def pushed(shape, pose, sides, grid, law):
+    outline = shape.markers(0.0, pose, grid.cell)
+    return contact.forces(law, [outline], [np.array(pose.position)], contact.wall_planes(sides, grid))[0]
+
+
+def test_only_walls_push_and_each_pushes_into_the_water():
+    law = flow.BodyContact(gap=0.2, pressure=10.0)
+    grid = flow.Grid(cells=(20, 20), cell=0.1)
+    sides = flow.Sides(left=flow.Wall(), right=flow.Slip(), bottom=flow.Wall())
+    planes = contact.wall_planes(sides, grid)
+    assert [plane.name for plane in planes] == ["left", "right", "bottom"]
+    for position, sign in (((0.6, 1.0), (1, 0)), ((1.4, 1.0), (-1, 0)), ((1.0, 0.6), (0, 1)), ((1.0, 1.4), (0, 0))):
+        force = pushed(CIRCLE, flow.Pose(position=position), sides, grid, law)
+        assert np.sign(np.round(force[:2], 9)).tolist() == list(sign)
+        assert abs(force[2]) < 1e-9
+    assert (pushed(CIRCLE, flow.Pose(position=(1.0, 0.71)), sides, grid, law) == 0).all()
+
+
+def test_a_plate_on_a_floor_feels_the_pressure_of_the_law_and_turns_where_one_end_is_lower():
+    law = flow.BodyContact(gap=0.1, pressure=50.0)
+    grid = flow.Grid(cells=(60, 20), cell=0.1, origin=(-3.0, 0.0))
+    sides, plate = flow.Sides(bottom=flow.Wall()), flow.Plate(length=4.0, thick=0.4)
+    force = pushed(plate, flow.Pose(position=(0.0, 0.25)), sides, grid, law)
+    assert force[1] == pytest.approx(50.0 * 0.25 * 3.6, rel=0.06)
+    tilted = pushed(plate, flow.Pose(position=(0.0, 0.24), angle=0.01), sides, grid, law)  # the right end is higher
+    assert tilted[2] < -1.0
+
+
+def test_bodies_in_space_are_pushed_alike_and_apart_and_by_a_floor():
+    law, ball = flow.BodyContact(gap=0.2, pressure=10.0), flow.Sphere(diameter=1.0)
+    direction = np.array([0.6, 0.0, 0.8])
+    centres = [np.zeros(3), 1.1 * direction]
+    outlines = [ball.markers(0.0, flow.Pose(position=tuple(centre)), 0.05) for centre in centres]
+    one, other = contact.forces(law, outlines, centres)
+    assert one[:3] == pytest.approx(-other[:3], abs=1e-9)
+    # of two spheres: the integral of p (1 - d / gap)^2 over the cap, d = 0.1 + x^2 / (2 R) on each side of the middle
+    assert other[:3] @ direction == pytest.approx(np.linalg.norm(other[:3]), rel=0.01)
+    depth = 0.1 / 0.2
+    assert np.linalg.norm(other[:3]) == pytest.approx(10.0 * 2 * np.pi * 0.25 * 0.2 * depth**3 / 3, rel=0.15)
+    grid = flow.Grid(cells=(20, 20, 20), cell=0.1)
+    floor = flow.Sides(low=flow.Wall())
+    force = pushed(ball, flow.Pose(position=(1.0, 1.0, 0.6)), floor, grid, law)
+    assert force[2] == pytest.approx(10.0 * 2 * np.pi * 0.5 * 0.2 * depth**3 / 3, rel=0.15)
