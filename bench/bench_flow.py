@@ -364,7 +364,7 @@ def tell_speed(label, make, cells, steps, far):
 FLOWS = (
     ("moving eel", eel, in_form((128, 256), (64,))),
     ("sphere at rest", in_space(moving=False), in_form((128, 192), (32,))),
-    ("moving ellipsoid", in_space(moving=True), in_form((128, 192), (64,))),
+    ("moving ellipsoid", in_space(moving=True), in_form((128, 192), (96,))),
 )
 """What is timed: what it is, how it is made from a number of cells and of threads, and for which numbers of cells."""
 

@@ -54,10 +54,10 @@ def test_every_table_equation_and_misprint_has_a_line_and_what_is_right_says_so(
     lines = article.verdicts().split("## Equation by equation")[1].split("\n## ")[0]
     rows = {line.split(" | ")[0].removeprefix("| "): line for line in lines.splitlines() if line.startswith("| ")}
     assert {f"({n})" for n in range(1, 21)} <= set(rows)
-    assert all(f"misprints.md#{key}" in lines for key in ERRATA)
+    assert all(f"[{key.replace('_', ' ')}](../src/suchus/article/paper/errata.py)" in lines for key in ERRATA)
     assert "| nothing |" in rows["(6)"]
     assert "#spine_forward" in rows["(15)"]
-    assert all("| nothing |" not in row for row in rows.values() if "misprints.md" in row)
+    assert all("| nothing |" not in row for row in rows.values() if "errata.py" in row)
 
 
 @pytest.mark.parametrize("name", QUICKLY)

@@ -20,7 +20,7 @@ BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic"]
 SMALL = {"width": 80, "height": 60}  # of a page whose picture nobody looks at: every pixel is drawn in software
 PATIENCE = 120_000  # [ms]; a busy machine without a graphics card draws a picture every few seconds
-ROBOT, GAIT = ROBOTS["caiman"], replace(GAITS["belly_crawl"], name="quick_crawl", period=1.0)
+ROBOT, GAIT = ROBOTS["caiman"], replace(GAITS["belly_crawl"], name="quick_crawl", period=1.5)
 pytestmark = [
     needs_engine,
     pytest.mark.skipif(BROWSER is None, reason="no chromium is installed: the page is not tried in one"),
@@ -98,10 +98,8 @@ def test_after_two_cycles_it_says_what_python_says(phone):
     assert "After 2 cycles the robot in your gait is" in text(phone, "verdict-text")
     for i, gait in enumerate((GAIT, control_group(GAIT))):
         record = suchus.crawl(ROBOT, gait, cycles=2)
-        for name, axis in (("forward", 0), ("sideways", 1)):  # to the digits shown, and a millimetre at their edge
-            number, unit = text(phone, f"{name}-{i}").replace("−", "-").split()
-            assert unit == "m"
-            assert float(number) == pytest.approx(float(displacement(record)[axis]), abs=0.006)
+        assert text(phone, f"forward-{i}") == f"{float(displacement(record)[0]):.2f} m".replace("-", "−")
+        assert text(phone, f"sideways-{i}") == f"{float(displacement(record)[1]):.2f} m".replace("-", "−")
         assert text(phone, f"height-{i}") == f"{1000 * float(height_peak_to_peak(record)):.0f} mm"
         assert float(text(phone, f"cost-{i}")) == pytest.approx(float(cost_of_transport(record)), rel=0.06)
         duty = text(phone, f"duty-{i}").split()
