@@ -8,6 +8,7 @@ from base64 import b64decode
 
 import pytest
 from tests.laboratory.page_modules import NODE, needs_engine, needs_node
+from tests.model.hinge_trees import quadruped
 
 from suchus.apps.cli import main
 from suchus.apps.laboratory import engine, page
@@ -51,6 +52,28 @@ def test_what_swims_begins_in_water_and_a_walker_may(toy):
     made = json.loads(part(page.laboratory_page(caiman, GAITS["belly_crawl"], level=0.05), "facts"))
     assert made["settings"]["level"] == 0.05
     assert made["physics"]["control"] == {"begin": 1.0, "ramp": 0.0}
+
+
+def test_a_body_whose_axis_cannot_bend_is_compared_with_its_first_numbers(toy, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "dog.urdf").write_text(quadruped())
+    assert main(["page", "dog.urdf"]) == 0
+    text = (tmp_path / "dog.html").read_text()
+    assert json.loads(part(text, "facts"))["reference"] == "first"
+    assert '<th scope="col">first numbers</th>' in text
+    assert "keeps the first numbers" in text
+    assert "axis still" not in text.partition("<script")[0]
+    assert "<code>suchus page dog.urdf my_gait.toml</code> begins with it" in text
+
+
+def test_a_body_without_limbs_has_no_words_of_feet(toy):
+    swimmer = page.laboratory_page(ROBOTS["swimmer"], GAITS["undulation"])
+    caiman = page.laboratory_page(ROBOTS["caiman"], GAITS["belly_crawl"])
+    for words in ("duty factors", "support by feet and tail", "A thick track is a foot"):
+        assert words in caiman
+        assert words not in swimmer
+    assert "suchus run displacement --robot caiman --gait my_gait.toml" in caiman
+    assert "suchus run displacement" not in swimmer
 
 
 @needs_node

@@ -111,3 +111,10 @@ def test_the_sentence_follows_the_run_whichever_way_it_comes_out():
         assert text.startswith("After 2 cycles ")
         assert expected in text
     assert "both robots move alike" in run("sentence", cases=[[1, [0.3, 0.3], 1.0, False]])[0]
+
+
+def test_the_sentence_compares_with_the_first_numbers_where_the_axis_cannot_bend():
+    same, changed = run("sentence", cases=[[1, [0.3, 0.3], 1.0, False, "first"], [1, [0.3, 0.2], 1.0, True, "first"]])
+    assert "Both have the same numbers" in same
+    assert "the one with the first numbers is 0.20 m ahead" in changed
+    assert "Your numbers take it 1.50 times as far." in changed

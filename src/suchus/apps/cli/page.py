@@ -8,7 +8,7 @@ from typing import Annotated
 
 import tyro
 
-from suchus.apps.cli.options import parse
+from suchus.apps.cli.options import option_values, parse
 from suchus.apps.cli.word_checks import check_page
 from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import check_name, check_replaceable
@@ -47,12 +47,14 @@ def make_page(words: Sequence[str]) -> int:
     )
     positional = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
     named = [word for pair in zip(("--robot", "--gait"), positional, strict=False) for word in pair]
-    options = parse(PageOptions, "suchus page", [*named, *words[len(positional) :]], description)
+    all_words = [*named, *words[len(positional) :]]
+    options = parse(PageOptions, "suchus page", all_words, description)
     check_name(options.robot.name, "robot")
     output = options.out or Path(f"{options.robot.name}.html")
     check_page(output)
     check_replaceable(output)
     gait = options.gait or default_gait(options.robot)
-    save(laboratory_page(options.robot, gait, level=options.water), output)
+    robot_word = ["", *option_values(all_words, "--robot")][-1]
+    save(laboratory_page(options.robot, gait, level=options.water, robot_word=robot_word), output)
     print(f"{options.robot.name}, {gait.name}: {output}, {output.stat().st_size / 1e6:.1f} MB; open it in a browser")
     return 0

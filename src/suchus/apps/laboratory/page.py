@@ -2,9 +2,10 @@
 
 import re
 from base64 import b64encode
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 import xarray as xr
 from markupsafe import Markup
@@ -14,8 +15,10 @@ from suchus.apps.laboratory.engine import Engine, licence_text, read_engine
 from suchus.apps.viewer.knobs import LEVEL, SLOPE, Knob, force_on, push_on
 from suchus.core.checks import require
 from suchus.core.errors import InvalidDesign
+from suchus.experiments.catalog.displacement.experiment import Displacement
 from suchus.robot.control import OpenLoop, Swimming
 from suchus.robot.design import Robot, layout
+from suchus.robot.design.needs import lacking
 from suchus.robot.design.scale import control_period, gravity_time
 from suchus.robot.gaits import control_group
 from suchus.robot.motion import Gait, check_limits
@@ -28,8 +31,34 @@ from suchus.visual.skin.ankles import REACH as ANKLE_REACH
 
 MAX_SIZE = 5_000_000
 """Size of a page at most [byte]."""
-LABELS = ("your gait", "axis still")
-"""What the two robots are called: the gait, and the same legs with the axis still."""
+
+
+class Reference(NamedTuple):
+    """What the second robot keeps, and how the page speaks of it."""
+
+    label: str
+    """What the second robot is called."""
+    question: str
+    """Question that the two robots answer."""
+    caption: str
+    """Sentence on both robots."""
+
+
+OWN_LABEL = "your gait"
+"""What the robot in the user's gait is called."""
+REFERENCES: Mapping[str, Reference] = {
+    "axis": Reference(
+        "axis still",
+        "Does bending the axis take it farther?",
+        "Two robots from the same start: one moves as you say; the other, pale, keeps its axis still.",
+    ),
+    "first": Reference(
+        "first numbers",
+        "Do your numbers take it farther?",
+        "Two robots from the same start: one moves as you say; the other, pale, keeps the first numbers.",
+    ),
+}
+"""The second robot by name: the control group, and for a body whose axis cannot bend the gait at the beginning."""
 FRICTION = Knob(
     label="ground friction", unit="× design", low=0.1, high=2.0, step=0.05,
     hint="Factor on the friction of all the robot's surfaces.",
@@ -46,7 +75,9 @@ def swims_by_default(robot: Robot, gait: Gait) -> bool:
     return not gait.has("foot paths") and not gait.has("strokes") and gait.has("wave") and floats(robot)
 
 
-def laboratory_page(robot: Robot, gait: Gait, *, level: float | None = None, engine: Engine | None = None) -> str:
+def laboratory_page(
+    robot: Robot, gait: Gait, *, level: float | None = None, robot_word: str = "", engine: Engine | None = None
+) -> str:
     """Return one HTML page in which a robot walks or swims, beside its control group.
 
     Args:
@@ -54,6 +85,7 @@ def laboratory_page(robot: Robot, gait: Gait, *, level: float | None = None, eng
         gait: the gait at the beginning.
         level: level of the water above the ground where the run begins [m]; by default there is water if the robot
             swims by default.
+        robot_word: name or file by which commands find the robot; by default its name.
         engine: MuJoCo in WebAssembly; the pinned one if None.
 
     Raises:
@@ -69,21 +101,29 @@ def laboratory_page(robot: Robot, gait: Gait, *, level: float | None = None, eng
     if swims and level is None:
         level = round(_DEFAULT_DEPTH * robot.length, 3)
     first = _first_records(robot, gait, level, swims=swims)
+    reference = reference_of(robot)
+    command, command_use = _next_command(robot, robot_word or robot.name)
+    labels = (OWN_LABEL, REFERENCES[reference].label)
     page = render_template(
         "laboratory.html",
         first.isel(run=0),
         robot,
         ghost=first.isel(run=1),
-        labels=LABELS,
+        labels=labels,
         title=f"{robot.name}: the laboratory in one page",
-        caption="Two robots from the same start: one moves as you say; the other, pale, keeps its axis still.",
-        facts=embed_json(_page_facts(robot, gait, level, swims=swims)),
+        caption=REFERENCES[reference].caption,
+        question=REFERENCES[reference].question,
+        robot_labels=labels,
+        facts=embed_json(
+            _page_facts(robot, gait, level, swims=swims) | {"labels": list(labels), "reference": reference}
+        ),
         engine_script=Markup(_inline_script(engine.script)),
         engine_binary=Markup(b64encode(engine.binary).decode("ascii")),
         program=Markup(program()),
         panel_style=Markup(_source("laboratory.css")),
         licence=licence_text(),
-        robot_name=robot.name,
+        command=command,
+        command_use=command_use,
     )
     size = len(page.encode())
     if size > MAX_SIZE:
@@ -91,6 +131,21 @@ def laboratory_page(robot: Robot, gait: Gait, *, level: float | None = None, eng
             f"the page of robot {robot.name!r} would have {size / 1e6:.1f} MB; {MAX_SIZE / 1e6:g} MB are allowed."
         )
     return page
+
+
+def reference_of(robot: Robot) -> str:
+    """Return what the second robot keeps, a name of ``REFERENCES``."""
+    return "first" if lacking(robot, ("axis",)) else "axis"
+
+
+def _next_command(robot: Robot, robot_word: str) -> tuple[str, str]:
+    """Return the command that takes the saved gait of a robot, and what it does."""
+    if lacking(robot, Displacement.needs):
+        return f"suchus page {robot_word} my_gait.toml", "begins with it"
+    return (
+        f"suchus run displacement --robot {robot_word} --gait my_gait.toml",
+        "judges it by twelve robots as they are built",
+    )
 
 
 def program() -> str:
@@ -142,5 +197,4 @@ def _page_facts(robot: Robot, gait: Gait, level: float | None, *, swims: bool) -
             "reach": ANKLE_REACH,
             "heights": list(FLAT_FOOT_HEIGHTS),
         },
-        "labels": list(LABELS),
     }

@@ -12,6 +12,14 @@ const MIN_ASIDE = 0.62; // distance of the robots to the side [size: length, or 
 const RESTING = "–";
 const WEAK_FRACTION = 0.3;
 
+/** Sentences on what the second robot keeps: its axis still, or where the axis cannot bend the first numbers. */
+const REFERENCES = {
+  axis: { other: "the one with its axis still", same: "Your gait does not bend the axis, so that both robots move alike.", costs: "Here bending the axis costs the way.",
+    makes: "Here the way comes from bending.", equal: "Bending makes no difference of more than 5 %.", takes: "Bending takes it" },
+  first: { other: "the one with the first numbers", same: "Both have the same numbers: change one, and the pale robot keeps the first ones.", costs: "Here your numbers cost the way.",
+    makes: "Here the way comes from your numbers.", equal: "Your numbers make no difference of more than 5 %.", takes: "Your numbers take it" },
+};
+
 const element = (id) => document.getElementById(id);
 const minus = (text) => text.replace("-", "−");
 const percent = (value) => `${(100 * value).toFixed(0)} %`;
@@ -41,23 +49,25 @@ function metresText(value, places) {
 /**
  * Return sentences on what two robots have done after some cycles.
  * @param {number} cycles number of cycles.
- * @param {number[]} forward displacement of the robot in the user's gait and of the one with its axis still [m].
+ * @param {number[]} forward displacement of the robot in the user's gait and of the one beside it [m].
  * @param {number} length length of the robot [m].
- * @param {boolean} bends whether the user's gait bends the axis.
+ * @param {boolean} differs whether the two move in different gaits.
+ * @param {string} reference what the one beside it keeps: `axis` or `first`, see REFERENCES.
  */
-export function verdictSentence(cycles, [mine, still], length, bends) {
+export function verdictSentence(cycles, [mine, still], length, differs, reference = "axis") {
+  const texts = REFERENCES[reference];
   const least = MIN_ADVANCE * length * cycles, places = length < 0.5 ? 3 : 2;
   const after = `After ${cycles} cycle${cycles > 1 ? "s" : ""}`;
   const way = (value) => Math.abs(value) < least ? "has hardly moved" : `is ${metresText(Math.abs(value), places)} ${value > 0 ? "ahead of" : "behind"} its start`;
-  if (!bends) return `${after} the robot in your gait ${way(mine)}. Your gait does not bend the axis, so that both robots move alike.`;
+  if (!differs) return `${after} the robot in your gait ${way(mine)}. ${texts.same}`;
   if (Math.abs(mine) < least && Math.abs(still) < least) return `${after} neither robot has moved by more than 1 % of its length in each cycle.`;
-  const both = `${after} the robot in your gait ${way(mine)}; the one with its axis still ${way(still)}.`;
-  if (mine < least) return `${both} Here bending the axis costs the way.`;
-  if (still < least) return `${both} Here the way comes from bending.`;
+  const both = `${after} the robot in your gait ${way(mine)}; ${texts.other} ${way(still)}.`;
+  if (mine < least) return `${both} ${texts.costs}`;
+  if (still < least) return `${both} ${texts.makes}`;
   const ratio = mine / still;
-  if (Math.abs(ratio - 1) < EQUAL_RATIO) return `${both} Bending makes no difference of more than 5 %.`;
+  if (Math.abs(ratio - 1) < EQUAL_RATIO) return `${both} ${texts.equal}`;
   const factor = ratio.toFixed(ratio < 10 ? (ratio < 2 ? 2 : 1) : 0);
-  return `${both} Bending takes it ${factor} times as far${ratio < 1 ? ": here it costs way" : ""}.`;
+  return `${both} ${texts.takes} ${factor} times as far${ratio < 1 ? ": here it costs way" : ""}.`;
 }
 
 /** Return the measures of a run from the start of the first cycle on. */
@@ -94,12 +104,21 @@ class Laboratory {
   get physics() { return this.facts.physics; }
   get weight() { return this.robot.mass * this.physics.gravity; }
 
+  /** Return the gaits of both robots: the user's, and the one that it is compared with. */
+  gaits() { return [this.gait, this.facts.reference === "axis" ? controlGroup(this.gait) : this.facts.gait]; }
+
+  /** Return whether both robots move in different gaits. */
+  differs() {
+    if (this.facts.reference !== "axis") return JSON.stringify(this.gait) !== JSON.stringify(this.facts.gait);
+    return this.gait.axis.some((bend) => bend.amplitude.some(Boolean)) || this.gait.curves.some((curve) => curve.part !== "limb");
+  }
+
   // ---- time ------------------------------------------------------------------------------------------------------------
 
   /** Put both robots at the start, with the present gait, ground, water and faults. */
   begin() {
     const { player, settings } = this;
-    const gaits = [this.gait, controlGroup(this.gait)];
+    const gaits = this.gaits();
     this.walks.forEach((walk, i) => {
       walk.begin(gaits[i], { friction: settings.friction, uphill: settings.uphill, level: settings.level, control: this.physics.control });
       for (const [servo, kind] of this.broken) walk.break(servo, kind, WEAK_FRACTION);
@@ -165,16 +184,15 @@ class Laboratory {
 
   showVerdict() {
     const { verdicts, cycles } = this, places = this.robot.length < 0.5 ? 3 : 2;
-    const bends = this.gait.axis.some((bend) => bend.amplitude.some(Boolean)) || this.gait.curves.some((curve) => curve.part !== "limb");
     element("verdict-text").textContent = this.changed ? "Numbers changed on the way: a verdict needs both from the same start. Press “Start again”."
-      : cycles ? verdictSentence(cycles, verdicts.map((verdict) => verdict.forward), this.robot.length, bends)
+      : cycles ? verdictSentence(cycles, verdicts.map((verdict) => verdict.forward), this.robot.length, this.differs(), this.facts.reference)
         : "The verdict comes with the end of the first cycle.";
     element("verdict-table").hidden = !cycles || this.changed;
     if (!cycles) return;
     const least = MIN_ADVANCE * this.robot.length * cycles, metre = (value) => metresText(value, places);
     const rows = { forward: (v) => metre(v.forward), sideways: (v) => metre(v.sideways), height: (v) => `${(1000 * v.height).toFixed(places === 2 ? 0 : 1)} mm`,
-      cost: (v) => Math.hypot(v.forward, v.sideways) < least ? RESTING : v.cost.toPrecision(2),
-      duty: (v) => this.robot.limbs.map((limb, i) => `${limb.name} ${v.duty[i].toFixed(2)}`).join(" ") || RESTING };
+      cost: (v) => Math.hypot(v.forward, v.sideways) < least ? RESTING : v.cost.toPrecision(2) };
+    if (this.robot.limbs.length) rows.duty = (v) => this.robot.limbs.map((limb, i) => `${limb.name} ${v.duty[i].toFixed(2)}`).join(" ");
     for (const [name, text] of Object.entries(rows))
       verdicts.forEach((verdict, i) => { element(`${name}-${i}`).textContent = text(verdict); });
   }
@@ -239,7 +257,7 @@ class Laboratory {
       if (!this.calm) this.player.play(true);
       return;
     }
-    const gaits = [this.gait, controlGroup(this.gait)];
+    const gaits = this.gaits();
     this.walks.forEach((walk, i) => walk.adapt(gaits[i], { ...walk.settings, friction: this.settings.friction, uphill: this.settings.uphill, level: this.settings.level }));
     this.player.meta.slope = [Math.cos(this.settings.uphill / 2), 0, -Math.sin(this.settings.uphill / 2), 0];
     this.player.flood(this.settings.level, this.walks[0].up);

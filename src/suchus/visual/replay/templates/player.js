@@ -471,7 +471,7 @@
   const move = (by) => { camera.moved = add(camera.moved, by); };
   const fitted = () => { // farther on narrow pictures, nearer on wide ones
     const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1);
-    return meta.size * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.35 : 1.15) / aspect);
+    return meta.size * (state.compare === "beside" ? 2.0 : 1.6) * Math.max(0.78, Math.min(1, 1.7 / aspect), (state.compare === "beside" ? 1.2 : 1.15) / aspect);
   };
   $("time").min = meta.start; $("time").max = lastTime(); $("time").step = 1 / meta.rate;
   const choose = (run) => { state.run = run; $("choice").textContent = actors[run].label; $("chosen").setAttribute("aria-valuetext", actors[run].label); redraw(); };
