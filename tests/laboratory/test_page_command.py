@@ -73,7 +73,7 @@ def test_a_body_without_limbs_has_no_words_of_feet(toy):
         assert words in caiman
         assert words not in swimmer
     assert "suchus run displacement --robot caiman --gait my_gait.toml" in caiman
-    assert "suchus run displacement" not in swimmer
+    assert "suchus run displacement --robot" not in swimmer
 
 
 @needs_node
