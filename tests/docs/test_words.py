@@ -82,8 +82,8 @@ def found(text: str, allowed: tuple[str, ...] = ()) -> list[str]:
 
 
 def pages() -> list[str]:
-    """Return every source, example, tool and page, as a path from the root."""
-    files = [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
+    """Return every source, example, tool and page but that of the article's own words, as a path from the root."""
+    files = [ROOT / "README.md", *(page for page in (ROOT / "docs").glob("*.md") if page.name != "verdicts.md")]
     for folder in ("src/suchus", "examples", "tools"):
         files += [path for ending in ("py", "html", "js", "md") for path in (ROOT / folder).rglob(f"*.{ending}")]
     return sorted(str(path.relative_to(ROOT)) for path in files if "__pycache__" not in path.parts)

@@ -13,6 +13,8 @@ from suchus.hardware.bus.wiring import CLOCK
 
 WAIT = 0.008
 """How long replies are waited for [s]; the bytes of a tick come on top."""
+_FIRST_ANSWER = 1.0
+"""How long a busy computer may take to say that its emulator has a clock [s]."""
 _STEPPING = 60.0
 """How long an emulator may take for the ticks that its clock is told to let pass [s]."""
 
@@ -220,7 +222,7 @@ class Bus:
     def clock(self) -> int | None:
         """Return the tick of an emulator's clock; None where there is none."""
         try:
-            reply = self.ask(self.protocol.read(CLOCK, 0, 4), CLOCK, 4)
+            reply = self.ask(self.protocol.read(CLOCK, 0, 4), CLOCK, 4, wait=max(self.wait, _FIRST_ANSWER))
         except NoAnswer:
             return None
         return int.from_bytes(reply.data, "little")
