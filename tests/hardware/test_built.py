@@ -46,6 +46,6 @@ def test_the_page_states_what_was_measured_and_no_servo_is_at_its_limit():
     rows = {(row["gait"], row["period"], row["robot"]): row for row in found["rows"]}
     assert all(rows[name, GAITS[name].period, "caiman"]["at_limit"] < AT_LIMIT for name in ITS_OWN)
     assert all(rows[name, period, "caiman"]["at_limit"] > AT_LIMIT for name, period in HASTY)
-    # a crawl that never ends is just what they bear: 70.2 degrees since rotors and friction are those of identified servos
+    # a crawl that never ends is just what they bear: 70.2 degrees, since friction is that of identified servos
     assert rows["belly_crawl", 4.0, "caiman"]["warmest"] < motor("STS3250").temperature_limit + 1.0
     assert rows["belly_crawl", 4.0, "former_caiman"]["at_limit"] > 0.1
