@@ -8,8 +8,8 @@ from typing import Annotated
 
 import tyro
 
-from suchus.apps.cli.options import option_values, parse
-from suchus.apps.cli.word_checks import check_page
+from suchus.apps.cli.options import parse
+from suchus.apps.cli.word_checks import check_page, option_values
 from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import check_name, check_replaceable
 from suchus.robot.design import Robot
