@@ -83,7 +83,7 @@ def assert_converged(gait, timesteps):
     cycles = CYCLES.get(gait, 1)
     fine = gait_measures(GAITS[gait], timesteps[-1], cycles)
     samples = 2.0 * control_period(ROBOTS["caiman"]) / GAITS[gait].period * (1.0 + 1e-9)
-    bounds = {name: max(bound, samples) for name, bound in CONVERGED.items()}
+    bounds = {name: max(bound * (1.0 + 1e-9), samples) for name, bound in CONVERGED.items()}
     for timestep in timesteps[:-1]:
         coarse = gait_measures(GAITS[gait], timestep, cycles)
         assert np.abs(coarse["duty"] - fine["duty"]).max() <= bounds["duty"], timestep
