@@ -437,7 +437,7 @@ class Experiment(ABC):
         shortfall = self._shortfall(self._sized_minima())
         if not shortfall:
             return ""
-        return f"Too short to answer: {shortfall}. `suchus run {self.name()}` without --quick answers."
+        return f"Too short to answer: {shortfall}. `suchus run {self.name()}` with its own settings answers."
 
     def _sized_minima(self) -> Mapping[str, float]:
         """Return ``answer_minima`` for the size of the robot: a smaller robot does the same in less time."""
