@@ -431,11 +431,9 @@ class Simulation(Fields):
             depth: how far it lies beyond the wall [m].
             time: time [s].
         """
-        speed = float(-wall.inward * outline.velocities[wall.axis].mean())
         text = (
             f"at t = {time:.4g} s {body.name} lies {depth:.3g} m deep in the {wall.name} side, a "
-            f"{type(getattr(self.setup.sides, wall.name)).__name__} at {'xyz'[wall.axis]} = {wall.position:.6g} m, and "
-            f"moves into it with {speed:.3g} m/s"
+            f"{type(getattr(self.setup.sides, wall.name)).__name__} at {'xyz'[wall.axis]} = {wall.position:.6g} m"
         )
         if body.name not in self.swimmers:
             return f"{text}: give a motion that stays in the water, or enlarge the grid."
@@ -444,13 +442,29 @@ class Simulation(Fields):
         tangential = [float(np.ptp(line)) for d, line in enumerate(outline.points) if d != wall.axis]
         weight = abs(self.swimmers[body.name].applied[wall.axis]) if law is None else 0.0
         mass = (body.density or self.setup.density) * body.shape.mass(time).size  # type: ignore[union-attr]
-        needed = (1.5 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
+        speed = self._fastest_approach(body.name, outline, wall)
+        needed = (3.0 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
         if law is not None:
             needed = max(needed, 4 * law.pressure)
         return (
-            f"{text}: give contact=BodyContact(gap={gap:.3g}, pressure={needed:.2g})"
-            f"{'' if law is None else f', whose pressure is now {law.pressure:.3g} Pa'}."
+            f"{text}, and moved towards it with up to {speed:.3g} m/s: give contact=BodyContact(gap={gap:.3g}, "
+            f"pressure={needed:.2g}){'' if law is None else f', whose pressure is now {law.pressure:.3g} Pa'}."
         )
+
+    def _fastest_approach(self, name: str, outline: Markers, wall: contact.WallPlane) -> float:
+        """Return the largest speed with which a body has moved towards a wall so far [m/s].
+
+        The film of water has slowed the body by the time at which it reaches the wall.
+
+        Args:
+            name: name of the body.
+            outline: its outline or skin now, in the frame of the grid.
+            wall: the wall.
+        """
+        velocities = [float(outline.velocities[wall.axis].mean())]
+        if self._log.rows:
+            velocities += self._log.record.column(f"velocity_{'xyz'[wall.axis]}", name).tolist()
+        return max(0.0, *(-wall.inward * velocity for velocity in velocities))
 
     def _torque_point(self, name: str, pose: Pose) -> tuple[float, ...]:
         """Return the reference point of a body's torque in the frame of the grid [m]."""
