@@ -488,7 +488,7 @@ class Policies(Experiment):
             measures |= estimated(f"cost_{arm}", record.cost.sel(of_arm).isel(straight).mean("case", skipna=False), "-")
             if arm == "policy":
                 for number in np.flatnonzero(undisturbed.values):
-                    greater_error = np.maximum(speed_error.sel(of_arm), turn_error.sel(of_arm))
+                    greater_error = xr.apply_ufunc(np.maximum, speed_error.sel(of_arm), turn_error.sel(of_arm))
                     measures |= estimated(f"command_error_{number}", greater_error.isel(case=number), "-")
             else:
                 excess = (error.sel(of_arm) - error.sel(arm="policy")).isel(grid).mean("case")
