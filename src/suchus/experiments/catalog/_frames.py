@@ -157,4 +157,4 @@ def _draw_angle(
     place, aside = origin + radius * middle, 14.0 * middle / np.hypot(*middle)
     if is_flat:
         place, aside = origin + radius * direction(0.0), np.array([0.0, -12.0])
-    ax.annotate(f"$\\theta_{i}$", place, tuple(aside), textcoords="offset points", ha="center", va="center")
+    ax.annotate(f"$\\theta_{i}$", tuple(place), tuple(aside), textcoords="offset points", ha="center", va="center")
