@@ -47,7 +47,7 @@ _ENDLESS = r"\bendless\b|\bwithout end\b"
 _HELD = r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b"
 _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joints?\b|\bjoints? (?:is |are )?lost\b"
 MEANT = {
-    "docs/glossary.md": tuple(OLD),
+    "docs/conventions.md": tuple(OLD),
     "src/suchus/experiments/catalog/sensitivity/experiment.py": (_APART,),
     "src/suchus/experiments/catalog/shore/experiment.py": (_GRIP,),
     "src/suchus/experiments/catalog/shore/figure.py": (_GRIP,),
@@ -139,5 +139,5 @@ def test_where_an_old_word_is_meant_it_stands(page):
 
 
 def test_the_glossary_has_every_old_word_that_is_looked_for():
-    text = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "conventions.md").read_text(encoding="utf-8")
     assert len(found(text)) >= 15
