@@ -1,4 +1,4 @@
-"""The conditions of the map, and the search for the best gait of each arm in one of them."""
+"""The conditions of the map, and the search for the best gait of each group in one of them."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -18,11 +18,11 @@ from suchus.robot.motion import START, Gait
 from suchus.sim.land import Ground, Run
 
 FREE, STILL = "free", "still"
-"""Arms: spine and tail move; the axis is still."""
+"""Groups: spine and tail move; the axis is still, as in the control group."""
 ARMS = (FREE, STILL)
-"""Arms of the map."""
+"""Groups of the map."""
 _POSTURE = "gait.tail_pitch"
-"""Field of the axis that the still arm may choose too: at which pitch the tail is held."""
+"""Field of the axis that the control group may choose too: at which pitch the tail is held."""
 _LIMITS = ("torque", "clearance", "sideways")
 """Limits of the ready search that hold on any ground: on grains and slopes loaded feet slide in every gait."""
 
@@ -45,11 +45,11 @@ class Cell(NamedTuple):
 
 
 def arm_searches(robot: Robot, gait: Gait) -> dict[str, Optimisation]:
-    """Return the ready search for the best crawl of each arm, from one gait, with equal legs, ranges and limits.
+    """Return the ready search for the best crawl of each group, from one gait, with equal legs, ranges and limits.
 
     Args:
         robot: the robot.
-        gait: the gait with spine and tail, from which both arms start.
+        gait: the gait with spine and tail, from which both groups start.
     """
     ready = crawl(robot)
     moving, still = ready.arms
@@ -80,7 +80,7 @@ def search_in_cell(
     Candidates that exceed a limit count less by their excess, so that there is a best one where none keeps all.
 
     Args:
-        spec: the search of one arm.
+        spec: the search of one group.
         cell: the condition.
         start: gait from which the search starts.
         evaluations: number of candidates; the generation in which they run out is finished [-].

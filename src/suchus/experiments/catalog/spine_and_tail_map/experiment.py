@@ -58,7 +58,7 @@ QUANTITIES = (
     ("electrical_ratio", "electrical cost, ratio [-]", 1.0),
     ("margin_change", "stability margin [m]", 0.0),
 )
-"""What the map shows: name in the measures, label with unit, and the value at which both arms are equal."""
+"""What the map shows: name in the measures, label with unit, and the value at which both groups are equal."""
 _LESS_IS_BETTER = ("cost_ratio", "electrical_ratio")
 _EXPLAINING = ("slip", "stance_share", "limb_share", "tail_share")
 _UNITS = {"forward": "m", "speed": "m/s", "cost": "1", "electrical": "1", "margin": "m"} | dict.fromkeys(
@@ -73,7 +73,7 @@ _MARGIN_SAMPLES = 8  # instants of the last cycle at which the support is looked
 class SpineAndTailMap(Experiment):
     """Spine and tail free against a still axis, each with the best gait that a search finds for it, over conditions.
 
-    Both arms search with the same budget, from the same legs, in the same ranges. The search at the base point comes
+    Both groups search with the same budget, from the same legs, in the same ranges. The search at the base point comes
     first; in each other condition, one axis at a time, both go on from their best there. Then robots as built walk in
     both gaits, and what spine and tail change is that between the two gaits of the same robot.
     """
@@ -90,7 +90,7 @@ class SpineAndTailMap(Experiment):
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
     gait: Gait = field(default_factory=lambda: GAITS["belly_crawl"])
-    """Gait from which both arms search, and whose period is that of the base."""
+    """Gait from which both groups search, and whose period is that of the base."""
     period_factors: tuple[float, ...] = (0.5, 1.5)
     """Periods over that of the gait [-]."""
     slopes: tuple[float, ...] = (radians(-8.0), radians(8.0))
@@ -104,9 +104,9 @@ class SpineAndTailMap(Experiment):
     strengths: tuple[float, ...] = (0.464e6, 2e6)
     """Strengths of grains: closely packed poppy seeds, and firm sand [N/m3]."""
     base_evaluations: int = 96
-    """Gaits that each arm may try at the base point [-]."""
+    """Gaits that each group may try at the base point [-]."""
     evaluations: int = 32
-    """Gaits that each arm may try in each other condition [-]."""
+    """Gaits that each group may try in each other condition [-]."""
     population: int = 8
     """Gaits of a generation [-]."""
     search_cycles: int = 1
@@ -199,7 +199,7 @@ class SpineAndTailMap(Experiment):
         ]
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
-        """Search the best gait of each arm in each condition, and let robots as built walk in both."""
+        """Search the best gait of each group in each condition, and let robots as built walk in both."""
         cells, searches = self.cells(), arm_searches(self.robot, self.gait)
         best: dict[str, Gait] = {}
         tables, gaits = [], []
@@ -231,7 +231,7 @@ class SpineAndTailMap(Experiment):
         )
 
     def _walked(self, cell: Cell, gaits: Mapping[str, Gait]) -> xr.Dataset:
-        """Return numbers of robots as built that walk in the gait of each arm, over ``arm`` and ``repeat``."""
+        """Return numbers of robots as built that walk in the gait of each group, over ``arm`` and ``repeat``."""
         designed = [Run(robot=cell.robot, gait=gaits[arm], ground=cell.ground, label=arm) for arm in ARMS]
         runs = on_fields_of_their_own(self.tolerances.repeats(designed, self.repeats, self.seed), self.repeats)
         record = simulate(

@@ -22,7 +22,7 @@ def draw_map(
 
     Args:
         labels: labels of the conditions, by name.
-        quantities: name of each quantity, label of its axis with its unit, and the value at which the arms are equal.
+        quantities: name of each quantity, label of its axis with its unit, and the value at which the groups are equal.
         words: word for each measure, a key of ``SIGNS``.
         measures: numbers with ``_low`` and ``_high``, as ``QUANTITY_CONDITION``.
     """
