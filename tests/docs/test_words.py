@@ -57,7 +57,7 @@ MEANT = {
     "src/suchus/sim/record/schema.py": (_GRIP,),
     "src/suchus/experiments/study/claims.py": (_APART,),
 }
-"""Where an old word is meant: the table of old words explains it; others hold the article's own words, or names in files."""
+"""Where an old word is meant: the table of old words explains it; others hold the article's words, or names in files."""
 
 
 def prose(path: Path) -> str:
