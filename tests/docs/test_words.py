@@ -48,6 +48,7 @@ _HELD = r"\b(?:held|endless) (?:body|swim|swimmer|eel|head|water)\b"
 _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joints?\b|\bjoints? (?:is |are )?lost\b"
 MEANT = {
     "docs/architecture.md": tuple(OLD),
+    "docs/conventions.md": (_LOST,),
     "src/suchus/experiments/catalog/sensitivity/experiment.py": (_APART,),
     "src/suchus/experiments/catalog/shore/experiment.py": (_GRIP,),
     "src/suchus/experiments/catalog/shore/figure.py": (_GRIP,),
@@ -57,7 +58,7 @@ MEANT = {
     "src/suchus/sim/record/schema.py": (_GRIP,),
     "src/suchus/experiments/study/claims.py": (_APART,),
 }
-"""Where an old word is meant: the table of old words explains it; others hold the article's words, or names in files."""
+"""Where an old word is meant: a table explains it; others hold the article's own words, or names in files."""
 
 
 def prose(path: Path) -> str:
