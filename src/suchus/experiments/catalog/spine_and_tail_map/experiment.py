@@ -118,7 +118,7 @@ class SpineAndTailMap(Experiment):
     tolerances: Tolerances = field(default_factory=Tolerances)
     """By how much they and their grounds differ from the design."""
     seed: int = 0
-    """Seed of their errors [-]."""
+    """Seed of their errors, and, with that of the ready search, of the searches [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -200,7 +200,7 @@ class SpineAndTailMap(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Search the best gait of each group in each condition, and let robots as built walk in both."""
-        cells, searches = self.cells(), arm_searches(self.robot, self.gait)
+        cells, searches = self.cells(), arm_searches(self.robot, self.gait, self.seed)
         best: dict[str, Gait] = {}
         tables, gaits = [], []
         for number, cell in enumerate(cells):
