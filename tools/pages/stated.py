@@ -30,6 +30,7 @@ from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.policies.figure import condition_label
 from suchus.experiments.claims import RULES, UNRULED
 
 ROOT = Path(__file__).parents[2]
@@ -83,7 +84,8 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "numbers": numbers,
-                            "greatest": greatest, "naturally": naturally}  # fmt: skip
+                            "greatest": greatest, "naturally": naturally,
+                            "condition_label": condition_label}  # fmt: skip
     return environment
 
 
