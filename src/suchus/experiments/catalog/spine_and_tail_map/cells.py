@@ -44,12 +44,13 @@ class Cell(NamedTuple):
     """Period of the gaits [s]."""
 
 
-def arm_searches(robot: Robot, gait: Gait) -> dict[str, Optimisation]:
+def arm_searches(robot: Robot, gait: Gait, seed: int = 0) -> dict[str, Optimisation]:
     """Return the ready search for the best crawl of each group, from one gait, with equal legs, ranges and limits.
 
     Args:
         robot: the robot.
         gait: the gait with spine and tail, from which both groups start.
+        seed: added to the seed of the ready search [-].
     """
     ready = crawl(robot)
     moving, still = ready.arms
@@ -59,6 +60,7 @@ def arm_searches(robot: Robot, gait: Gait) -> dict[str, Optimisation]:
         run=replace(ready.run, gait=gait),
         limits=tuple(limit for limit in ready.limits if limit.name in _LIMITS),
         arms=(moving, Arm(name=STILL, values=held)),
+        seed=ready.seed + seed,
         reasons=(),
     )
     return {FREE: whole.for_arm(whole.arms[0]), STILL: whole.for_arm(whole.arms[1])}

@@ -66,6 +66,7 @@ _UNITS = {"forward": "m", "speed": "m/s", "cost": "1", "electrical": "1", "margi
 )
 _FIRST_SIGMA, _NEXT_SIGMA = 0.2, 0.1  # spread of the first search, and of those that start from its best
 _CORRELATION = 0.06  # [m]; of bumps, about a foot's length
+_MAX_LISTED = 3  # conditions that a sentence names
 _MARGIN_SAMPLES = 8  # instants of the last cycle at which the support is looked at
 
 
@@ -118,7 +119,7 @@ class SpineAndTailMap(Experiment):
     tolerances: Tolerances = field(default_factory=Tolerances)
     """By how much they and their grounds differ from the design."""
     seed: int = 0
-    """Seed of their errors [-]."""
+    """Seed of their errors, and, with that of the ready search, of the searches [-]."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -200,7 +201,7 @@ class SpineAndTailMap(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Search the best gait of each group in each condition, and let robots as built walk in both."""
-        cells, searches = self.cells(), arm_searches(self.robot, self.gait)
+        cells, searches = self.cells(), arm_searches(self.robot, self.gait, self.seed)
         best: dict[str, Gait] = {}
         tables, gaits = [], []
         for number, cell in enumerate(cells):
@@ -340,7 +341,7 @@ def words_of(measures: Mapping[str, Measure]) -> dict[str, str]:
 def listed_words(
     words: Mapping[str, str], quantity: str, labels: Mapping[str, str], comparatives: tuple[str, str]
 ) -> str:
-    """Return in how many conditions spine and tail pay, in which they cost and which are undecided, as a clause.
+    """Return in how many conditions spine and tail pay, cost and are undecided, as a clause; few of them by name.
 
     Args:
         words: word of each measure.
@@ -354,10 +355,10 @@ def listed_words(
     }
     favour, against = comparatives
     text = f"{favour} in {len(of_word['pays'])} of {len(labels)} conditions"
-    if of_word["costs"]:
-        text += f", {against} at {listed(of_word['costs'])}"
-    if of_word["undecided"]:
-        text += f", undecided at {listed(of_word['undecided'])}"
+    for word, said in (("costs", against), ("undecided", "undecided")):
+        cells = of_word[word]
+        text += f", {said} in {len(cells)}" * bool(cells)
+        text += f" ({listed(cells)})" * (0 < len(cells) <= _MAX_LISTED)
     return text
 
 
