@@ -473,12 +473,13 @@ class Policies(Experiment):
         """Return tracking errors, falls and costs of each control, over the commands and in each condition."""
         speed_error, turn_error = _errors(record)
         error = 0.5 * (speed_error + turn_error)
+        greater_error = speed_error.where(speed_error > turn_error, turn_error)
         undisturbed = record.condition == UNDISTURBED
         measures = Measures()
         for arm in _measured_arms(record):
             of_arm = {"arm": arm}
             grid = {"case": undisturbed}
-            follows = np.maximum(speed_error, turn_error) <= record.attrs["goal"]
+            follows = greater_error <= record.attrs["goal"]
             measures |= estimated(f"tracking_error_{arm}", error.sel(of_arm).isel(grid).mean("case"), "-")
             measures |= estimated(f"speed_error_{arm}", speed_error.sel(of_arm).isel(grid).mean("case"), "-")
             measures |= estimated(f"turn_error_{arm}", turn_error.sel(of_arm).isel(grid).mean("case"), "-")
@@ -488,8 +489,7 @@ class Policies(Experiment):
             measures |= estimated(f"cost_{arm}", record.cost.sel(of_arm).isel(straight).mean("case", skipna=False), "-")
             if arm == "policy":
                 for number in np.flatnonzero(undisturbed.values):
-                    greater_error = xr.apply_ufunc(np.maximum, speed_error.sel(of_arm), turn_error.sel(of_arm))
-                    measures |= estimated(f"command_error_{number}", greater_error.isel(case=number), "-")
+                    measures |= estimated(f"command_error_{number}", greater_error.sel(of_arm).isel(case=number), "-")
             else:
                 excess = (error.sel(of_arm) - error.sel(arm="policy")).isel(grid).mean("case")
                 measures |= estimated(f"error_excess_{arm}", excess, "-")
