@@ -40,13 +40,13 @@ NUMBERS = {
 def record(**changed):
     """Return a record of two conditions, base and half the friction, whose robots differ by a little."""
     numbers = NUMBERS | changed
-    shape = (2, len(ARMS), SPREAD.size)
+    shape = (1, 2, len(ARMS), SPREAD.size)
     arrays = {name: np.empty(shape) for name in numbers}
     for name, values in numbers.items():
         for arm, value in enumerate(values):
-            arrays[name][:, arm] = value + 0.001 * (1 + arm) * SPREAD
-    variables = {name: (("cell", "arm", "repeat"), values, {"units": "1"}) for name, values in arrays.items()}
-    kept = {"keeps_limits": (("cell", "arm"), np.array([[True, True], [True, False]]), {"units": "1"})}
+            arrays[name][:, :, arm] = value + 0.001 * (1 + arm) * SPREAD
+    variables = {name: (("search", "cell", "arm", "repeat"), values, {"units": "1"}) for name, values in arrays.items()}
+    kept = {"keeps_limits": (("search", "cell", "arm"), np.array([[[True, True], [True, False]]]), {"units": "1"})}
     coordinates = {"cell": ["base", "friction_0_5"], "label": ("cell", ["base", "friction x 0.5"]), "arm": list(ARMS)}
     return xr.Dataset(variables | kept, coords=coordinates)
 
@@ -64,6 +64,17 @@ def test_changes_are_those_between_the_gaits_of_the_same_robot():
     assert measures["saving_electrical_share"].value == 0.0
     assert measures["steadier_share"].value == 0.0
     assert measures["limits_kept_share"].value == 0.75
+
+
+def test_an_interval_holds_that_of_every_search():
+    first, second = record(), record(cost=(1.7, 1.6), forward=(0.5, 0.2))
+    measures = QUESTION.measure(xr.concat([first, second], "search"))
+    assert measures["gain_base"].value == pytest.approx(0.25)
+    assert measures["gain_base_low"].value == pytest.approx(0.199)
+    assert measures["gain_base_high"].value == pytest.approx(0.301)
+    assert measures["saving_share"].value == 0.0
+    assert words_of(measures)["cost_ratio_base"] == "undecided"
+    assert measures["paying_share"].value == 1.0
 
 
 def test_who_does_not_get_on_has_no_cost_and_decides_nothing():
