@@ -87,7 +87,7 @@ def test_the_explanation_follows_the_measures():
     told = experiment.explain(measured((0.41, 0.5, 0.9), (0.2, 0.2, 0.4), spread=0.1))
     assert "may outrun or not, within what robots as built differ, the fastest trot or walk (0.40 m/s)" in told
     told = experiment.explain(measured((0.6, 0.6, 0.6), (0.09, 0.09, 0.09)))
-    assert "and outruns the fastest trot or walk" in told
+    assert "It outruns the fastest trot or walk" in told
     assert "no servo speed of the map" in told
 
 
