@@ -473,7 +473,7 @@ class Policies(Experiment):
         """Return tracking errors, falls and costs of each control, over the commands and in each condition."""
         speed_error, turn_error = _errors(record)
         error = 0.5 * (speed_error + turn_error)
-        greater_error = xr.where(speed_error > turn_error, speed_error, turn_error)
+        greater_error = speed_error.where(speed_error > turn_error, turn_error)
         undisturbed = record.condition == UNDISTURBED
         measures = Measures()
         for arm in _measured_arms(record):
