@@ -48,14 +48,18 @@ def option_values(words: Sequence[str], option: str) -> list[str]:
     return joined + [following for word, following in pairwise(words) if word == option]
 
 
-def check_page(path: Path) -> None:
+def check_page(path: Path, option: str = "--out") -> None:
     """Refuse a page whose file name does not end in .html.
+
+    Args:
+        path: the page.
+        option: option that names it.
 
     Raises:
         BadCommand: the name of its file does not end in .html.
     """
     if path.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
+        raise BadCommand(f"the page would be {path}; say {option} FILE.html.")
 
 
 def check_toml(path: Path, content: str) -> None:
