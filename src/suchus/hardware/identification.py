@@ -30,6 +30,7 @@ from suchus.hardware.calibrate import FitEstimate
 from suchus.hardware.log import foot_centers, hinge_angles
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import Robot, layout
+from suchus.robot.motion import START
 from suchus.robot.motors import motors
 from suchus.sim.model.inverse import held_torques
 from suchus.visual.skin import poses
@@ -189,6 +190,7 @@ def identify_walking(
         IncompatibleRecord: the log has no currents, is too short, or no limb swings quickly enough.
         UnknownName: a model whose torque constant is not known.
     """
+    record = record.sel(time=slice(START, None))  # before it the robot goes to its first posture, and stands
     period = _check_log(record, robot)
     motion = _motion(record, robot, period)
     swings = _swings(record.servo_angle.values, robot)

@@ -232,7 +232,8 @@ class FaultKnowledge(TwoGroups):
             cells: conditions; those without a fault are left out.
             joints: joints that fail.
         """
-        coords = {"arm": list(ARMS), "kind": list(KINDS), "joint": list(joints), "gait": [KEPT, INTACT, *joints]}
+        coords: dict[str, list[str]] = {"arm": [*ARMS], "kind": [*KINDS], "joint": [*joints]}
+        coords["gait"] = [KEPT, INTACT, *joints]
         shape = [len(names) for names in coords.values()]
         table = np.full((*shape, self.repeats, *values.shape[1:]), np.nan)
         for number, cell in enumerate(cells):

@@ -62,8 +62,8 @@ def draw_gains(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
     return captioned(
         figure,
         "Displacement in the settled cycles after a joint of the left leg has failed: the robot that keeps its gait, "
-        "the one that changes to the best gait of the intact robot, and the one that knows the joint. Medians and their "
-        "95 % intervals. Lines: the unbroken robot in its own gait (dotted) and in the searched one (dashed).",
+        "the one that changes to the best gait of the intact robot, and the one that knows the joint. Medians and "
+        "their 95 % intervals. Lines: the unbroken robot in its own gait (dotted) and in the searched one (dashed).",
     )
 
 
