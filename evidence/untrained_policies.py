@@ -27,7 +27,7 @@ from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Ground, Lake
 
-NAME = "policies"
+NAME = "untrained_policies"
 EPISODES, SEED = 32, 1000
 SHORE_EPISODES = 3
 SLOPES = (8, 12, 15)
