@@ -1,4 +1,4 @@
-"""How often the intervals of ``suchus capture`` hold the truth, and the passage of docs/capture_evidence.md that says so.
+"""How often the intervals of ``suchus capture`` hold the truth, and the passage of docs/capture_evidence.md on it.
 
 ``python tests/capture/intervals.py [COUNT]``; stopped early, what was read until then counts, and the next call goes on
 behind it if neither the reading nor the animals have changed.
