@@ -243,8 +243,8 @@ def _check_times(time: np.ndarray, source: str, *, max_approach: float) -> None:
     if time[0] < -max_approach - _TIME_TOLERANCE or time[-1] > _MAX_TIME:
         earliest = -max_approach or 0.0  # no minus before zero
         raise IncompatibleRecord(
-            f"{source} has times from {time[0]:.4g} to {time[-1]:.4g} s; {earliest:g} to {_MAX_TIME:g} s is allowed: the "
-            "unit or the beginning is another."
+            f"{source} has times from {time[0]:.4g} to {time[-1]:.4g} s; {earliest:g} to {_MAX_TIME:g} s is allowed: "
+            "the unit or the beginning is another."
         )
     if len(steps) and np.median(steps) < _MIN_SAMPLE_INTERVAL:
         raise IncompatibleRecord(

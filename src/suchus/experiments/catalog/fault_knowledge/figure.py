@@ -39,7 +39,11 @@ def draw_gains(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
             ax = axes[row, column]
             for state in ("kept", "intact"):
                 ax.axhline(
-                    measures[f"unbroken_{arm}_{state}"], color=COLOURS[arm], linewidth=1.3, linestyle=_DASHES[state]
+                    measures[f"unbroken_{arm}_{state}"],
+                    color=COLOURS[arm],
+                    linewidth=1.3,
+                    linestyle=_DASHES[state],
+                    label=f"_unbroken, {_MARKS[state][2]}",
                 )
             for number, (state, (marker, fill, _)) in enumerate(_MARKS.items()):
                 names = [f"forward_{joint}_{kind}_{arm}_{state}" for joint in joints]

@@ -538,7 +538,7 @@ def sharing_measures(record: xr.Dataset, gait: Gait, hold: float) -> Measures:
         hold: duration at the end of the starts that is measured [cycle].
     """
     distances = record.start_way.sel(law=list(_DISTANCE_LAWS)).rename(start_time="time").dropna("time", how="all")
-    has_started = distances.isel(time=0).notnull().all("law").values
+    has_started = distances.notnull().any("time").all("law").values
     distances = _last_seconds(distances.isel(start=has_started), hold * gait.period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
     measures, confidence = Measures(), look_confidence(int(record.sharing_looks))
