@@ -31,7 +31,7 @@ from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.policies.figure import condition_label
-from suchus.experiments.claims import RULES, UNRULED, claims_of
+from suchus.experiments.claims import RULES, UNRULED, claims_of, known_claims
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -103,7 +103,7 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "judged": judged,
-                            "numbers": numbers,
+                            "numbers": numbers, "known_claims": known_claims,
                             "greatest": greatest, "naturally": naturally,
                             "condition_label": condition_label}  # fmt: skip
     return environment
