@@ -29,7 +29,7 @@ FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
     }
 )
 """Experiment and settings of each result that is an experiment in full."""
-SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
+SEARCHES = ("crawl", "fault", "lifted", "stand", "thrift", "turn")
 """Searches whose outcome is kept, as ``optimise_NAME``."""
 _SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swimming.coupling", "suchus.flow")
 _ATLAS = "evidence.atlas"

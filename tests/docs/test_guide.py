@@ -8,6 +8,8 @@ import yaml
 
 ROOT = Path(__file__).parents[2]
 MAX_PAGES = 26
+MAX_WORDS = 35_000
+MAX_WORDS_OF_A_PAGE = 3_000
 QUERIES = {"cite": "index", "own URDF": "index", "Feetech": "hardware_bus", "DeepLabCut": "capture"}
 """What readers look for, and the page that answers."""
 
@@ -74,10 +76,21 @@ def test_the_guide_has_few_pages_and_every_page_has_its_tab():
     assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= set(listed)
 
 
+@pytest.mark.parametrize("name", GUIDE)
+def test_a_page_begins_with_what_one_can_do_a_picture_and_a_command(name):
+    assert lacks(page(name)) == []
+
+
 def test_a_page_that_begins_otherwise_is_noticed():
     assert lacks("# A\n\n## B\n") == ["a sentence", "a picture or a result", "what runs"]
     assert lacks("# A\n\nDo this.\n\n![b](c.png)\n\n## B\n\n```sh\nd\n```\n\n## E\n") == []
     assert lacks("# A\n\nDo this.\n\n## B\n\n![b](c.png)\n\n## C\n\n```sh\nd\n```\n") == ["what runs"]
+
+
+def test_the_guide_is_read_in_an_afternoon():
+    counts = {name: words(page(name)) for name in GUIDE}
+    assert {name: count for name, count in counts.items() if count > MAX_WORDS_OF_A_PAGE} == {}
+    assert sum(counts.values()) <= MAX_WORDS
 
 
 def test_words_are_counted_without_code_and_addresses():

@@ -31,7 +31,7 @@ from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.policies.figure import condition_label
-from suchus.experiments.claims import RULES, UNRULED
+from suchus.experiments.claims import RULES, UNRULED, claims_of
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -61,6 +61,25 @@ def asked(experiment: str, measures: Mapping[str, float]) -> list[dict[str, Any]
     return found
 
 
+def judged(experiment: str, measures: Mapping[str, float]) -> list[dict[str, str]]:
+    """Return the claims that an experiment states itself: the statement, the word, the interval and the reason."""
+    claims, verdicts = claims_of(experiment), []
+    for rule in EXPERIMENTS[experiment].rules():
+        if rule.claim in claims:
+            verdict = judge(rule, measures, claims=claims)
+            ends = [f"{measures[f'{rule.measure}{end}']:+.2f}" for end in ("_low", "_high")]
+            unit = "" if claims[rule.claim].unit == "-" else f" {claims[rule.claim].unit}"
+            verdicts.append(
+                {
+                    "sense": claims[rule.claim].sense,
+                    "word": verdict.verdict,
+                    "interval": f"{ends[0]} to {ends[1]}{unit}",
+                    "why": verdict.why,
+                }
+            )
+    return verdicts
+
+
 def numbers(measures: Mapping[str, float], start: str, end: str = "") -> list[float]:
     """Return the numbers that names of measures hold between start and end, ``0_03`` for 0.03, in order."""
     between = (name.removeprefix(start).removesuffix(end) for name in measures if name[: len(start)] == start)
@@ -83,6 +102,7 @@ def templates() -> Environment:
     environment = experiment.templates(WORDS)
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
+                            "judged": judged,
                             "numbers": numbers,
                             "greatest": greatest, "naturally": naturally,
                             "condition_label": condition_label}  # fmt: skip

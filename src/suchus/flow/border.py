@@ -646,4 +646,5 @@ class Border:
             rows = [edge.table_row(start, self.stream) for edge, start in zip(self.edges, starts, strict=False)]
             table = np.array([row for row, _ in rows], np.int64).reshape(-1, 8)
             self.side_table = self.stream, table, np.array([value for _, value in rows], velocity.dtype)
-        _fill_plane(velocity, *self.side_table[1:], self.prescribed)
+        _, table, values = self.side_table
+        _fill_plane(velocity, table, values, self.prescribed)

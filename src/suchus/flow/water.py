@@ -750,9 +750,11 @@ class Fluid:
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
         for axis, is_periodic in zip(reversed(range(self.ndim)), self.repeats, strict=True):
-            before, n = (slice(None),) * axis, x.shape[axis]
-            x[*before, PAD - 1] = x[*before, n - PAD - 1 if is_periodic else PAD]
-            x[*before, n - PAD] = x[*before, PAD if is_periodic else n - PAD - 1]
+            before: tuple[slice | int, ...] = (slice(None),) * axis
+            first, last = PAD, int(x.shape[axis]) - PAD - 1
+            lower_source, upper_source = (last, first) if is_periodic else (first, last)
+            x[(*before, first - 1)] = x[(*before, lower_source)]
+            x[(*before, last + 1)] = x[(*before, upper_source)]
 
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure of the water's response to an acceleration of the bodies.

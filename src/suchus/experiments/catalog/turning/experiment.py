@@ -72,9 +72,9 @@ class Turning(Experiment):
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
     """Radii of the commanded circles [m]."""
-    friction_scales: tuple[float, ...] = (0.8, 1.0, 1.25)
+    friction_scales: tuple[float, ...] = (0.8, 1.25)
     """Frictions of the grounds on which the circles are walked to either side, over that on which the curve is measured
-    [-]."""
+    [-]; on that ground itself they are walked to the left."""
     cycles: int = 10
     """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
