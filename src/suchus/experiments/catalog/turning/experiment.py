@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.core.checks import Checks
+from suchus.core.errors import NotConverged, OutsideLimits
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.experiment import (
     Experiment,
@@ -226,13 +227,24 @@ class Turning(Experiment):
     def _walk(
         self, gait: Gait, controls: Sequence[Walking], progress: Any, grounds: Sequence[Ground] = (Ground(),)
     ) -> xr.Dataset:
-        """Return the record of walks under each control, on one ground after the other."""
+        """Return the record of walks under each control, on one ground after the other.
+
+        Raises:
+            OutsideLimits: a limb cannot follow strokes that are so unequal.
+        """
         runs = [
             Run(robot=self.robot, gait=gait, control=control, ground=ground)
             for ground in grounds
             for control in controls
         ]
-        return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
+        try:
+            return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
+        except NotConverged as error:
+            asymmetry = max(abs(control.asymmetry) for control in controls)
+            raise OutsideLimits(
+                f"robot {self.robot.name!r} cannot walk gait {gait.name!r} with strokes of asymmetry {asymmetry:g}: "
+                f"{str(error).partition(':')[0]}; give smaller --asymmetries."
+            ) from error
 
     def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
         """Return the curvature of each path [1/m]."""
