@@ -183,8 +183,8 @@ def _of_today(rows: Mapping[str, Any]) -> dict[str, Any]:
 
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": _of_today(SHARES), "too_few": _of_today(SPARSE_SHARES),
-             "unruled": UNRULED, "rules": RULES}  # fmt: skip
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "unruled": UNRULED, "rules": RULES}
+    known |= {"shares": _of_today(SHARES), "too_few": _of_today(SPARSE_SHARES)}
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 
