@@ -123,6 +123,15 @@ def test_a_first_word_that_names_a_robot_may_be_such_a_file(desk, capsys):
     assert "note: Front:" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", ["page", "parts", "size", "view"])
+def test_a_robot_that_is_named_twice_is_refused(command, desk, capsys):
+    before = sorted(desk.rglob("*"))
+    for words in (["caiman", "--robot", "strider"], ["caiman", "--robot=strider"]):
+        assert main([command, *words]) == 2
+        assert "caiman and --robot strider both name the robot: give one of the two" in capsys.readouterr().err
+    assert sorted(desk.rglob("*")) == before
+
+
 def test_a_file_that_needs_options_is_refused_with_the_line(desk, capsys):
     text = (desk / "walker.urdf").read_text()
     mesh = '<mesh filename="package://dog/trunk.stl"/>'

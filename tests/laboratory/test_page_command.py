@@ -102,6 +102,10 @@ def test_bad_input_gets_a_sentence(toy, tmp_path, monkeypatch, capsys):
     assert "'caimann'" in refusal(capsys, "caimann")
     assert "tripod" in refusal(capsys, "caiman", "tripod")
     assert "0 to 10.1 m" in refusal(capsys, "caiman", "--water", "-1")
+    assert "there is no robot named ''" in refusal(capsys, "")
+    assert "there is no gait named ''" in refusal(capsys, "caiman", "")
+    for level in ("nan", "inf", "-inf", "1e9"):
+        assert "0 to 10.1 m" in refusal(capsys, "caiman", "--water", level)
     assert "the page would be walk.txt" in refusal(capsys, "caiman", "--out", "walk.txt")
     assert list(tmp_path.iterdir()) == []
 

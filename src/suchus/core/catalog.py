@@ -163,7 +163,8 @@ class Catalog(Mapping[str, T], Generic[T]):
             value: value as a user gives it.
             folder: the folder from which paths are read.
         """
-        if not isinstance(value, (str, Path)) or self._read_file is None or (isinstance(value, str) and value in self):
+        is_name = isinstance(value, str) and (not value or value in self)  # an empty text names no folder
+        if not isinstance(value, (str, Path)) or self._read_file is None or is_name:
             return None
         path = Path(folder) / value
         return path if path.suffix == self._suffix or path_exists(path) else None

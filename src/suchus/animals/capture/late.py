@@ -2,7 +2,9 @@
 
 Neighbours have a constant distance. If one of them is late, the distance varies: with the turn of the link in every
 cycle, and with the pace from cycle to cycle. Both effects are tested separately, and either half of the film must show
-the lag: a path that turns, or a walk that stops, leaves variations that look like lags, but not the same twice.
+the lag: a path that turns, or a walk that stops, leaves variations that look like lags, but not the same twice. A body
+that bends between two keypoints shortens the line between them in the same way in every cycle. That much is allowed,
+however many frames there are.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -23,10 +25,11 @@ _MIN_LAG, _MAX_LAG = 0.015, 0.3  # [cycle]; range of lags that are reported
 _GAIN, _FRAMES = 18.0, 30  # twice the gain of log-likelihood that is significant; least frames
 _EXPLAINS = 0.5  # greatest fraction of the distance's variance that may remain at the lag
 _GAIN_OF_TWO = 12.0  # the gain for both links of a point at one lag, by turns and pace together
-_MIN_TURN_GAIN = 7.0  # the part of that gain by the turns that is significant without the pace
+_SHARED_NOISE = 1.5  # variance of twice a point less both neighbours, over that of two links with noise of their own
+_MIN_TURN_GAIN = 5.0  # the part of that gain by the turns that is significant without the pace
 _EXPLAINS_OF_TWO = 0.75  # greatest fraction of the variance that may remain in both links
 _NEARLY = 0.08  # [cycle]; greatest lag by both links: a longer one is significant in one link alone, or noise
-_MIN_PACE_Z = 3.0  # lag by the pace that is significant without the turns [standard error]
+_MIN_PACE_Z = 2.5  # lag by the pace that is significant without the turns [standard error]
 _MIN_LINK_Z = 1.5  # the same for each link alone
 _MIN_END_Z = 5.0  # the same for a point with one link
 _BENDS = 5  # greatest power of time in the fit of a path
@@ -34,12 +37,14 @@ _HARMONICS = 4  # greatest number of harmonics in the fit of a path
 _SKIN = 0.01  # [link]; least standard deviation of a distance
 _MAX_LINK = 0.5  # [trunk]; a longer link may bend between its keypoints, which nothing shows
 _MAX_CHORD_BEND = 0.05  # [rad]; root mean square of the bend at a longer link that says nothing of the pace
-_CHORD = 0.1  # [link]; standard deviation of the distance of keypoints with such a bend
+_CHORD = 0.08  # [link]; standard deviation of a chord whose body swings by a radian about a steady bend of more
+_PACED_CHORD = 0.3  # fraction of a chord's standard deviation that may vary with the pace
+_MAX_HALFWAY = 0.7  # greatest fraction of the gain that is missing at half the lag; a distance that lags has a quarter
 _WHITE = 0.3  # mean square of residuals' steps over twice their variance, above which they count as independent
 _UNKNOWN = 1e9  # [s]; standard error of a lag with too few frames
 _MAX_LAG_RATIO, _MIN_HALF_Z = (
     2.0,
-    2.0,
+    1.6,
 )  # lag in half of a film over that in the whole film; its standard errors, by the pace
 _EXACT = 1e-4  # [link]; least error of a keypoint's position
 _SMOOTHING_WINDOW = 0.3  # [cycle]; for the velocity of a keypoint
@@ -226,24 +231,30 @@ class _Lags:
         sways = float(mean[self._zero_index]) * np.hypot(_SKIN, mean_square_bend / 8)
         noise = sum(float(np.nanvar(series)) for series in residual) / 2 + sways**2
         chord = float((mean[self._zero_index] * mean_square_bend / 16) ** 2 / noise)
-        if mean[self._zero_index] > self._max_link:
-            noise += (_CHORD * float(mean[self._zero_index])) ** 2
+        if mean[self._zero_index] > self._max_link:  # the same in every cycle: more frames do not make it smaller
+            chord += (_CHORD * float(mean[self._zero_index])) ** 2 / noise
         frames = len(self._tracks.time) * min(1.0, *(_independent_fraction(series) for series in residual))
-        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, frames), frames)
+        count = max(2 * len(course.harmonics) + len(course.drift) for name in pair for course in self._courses[name])
+        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, frames, count / frames), frames)
 
-    def _surely(self, varies: np.ndarray, chord: float, frames: float) -> float:
+    def _surely(self, varies: np.ndarray, chord: float, frames: float, floor: float) -> float:
         """Return the lag at which a distance varies least [s], 0 if it is not significant.
 
         Args:
             varies: variance of the distance over that of noise, by the lag.
             chord: what of that a bend between the points may add.
             frames: number of frames with independent residuals.
+            floor: variance that noise gives to the fitted paths; a smaller one is chance.
         """
         best = int(np.argmin(varies))
-        variance_drop = float(varies[self._zero_index] - varies[best])
+        variance_drop = float(varies[self._zero_index] - max(float(varies[best]), floor))
         gained = frames * variance_drop
+        halfway = (best + self._zero_index) // 2
         is_significant = (
-            gained > _GAIN and variance_drop > chord and varies[best] < _EXPLAINS * varies[self._zero_index]
+            gained > _GAIN
+            and variance_drop > chord
+            and varies[best] < _EXPLAINS * varies[self._zero_index]
+            and varies[halfway] - varies[best] < _MAX_HALFWAY * variance_drop
         )
         lag = float(self.lags[best])
         return lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0
@@ -252,7 +263,7 @@ class _Lags:
         """Return the inner point of a chain whose lag is significant in both links together, if there is one [s].
 
         A late point has the same lag behind both neighbours, by the turns and by the pace. All four estimates together
-        may be significant where each alone is not.
+        may be significant where each alone is not. The noise of the point is in both of its links.
         """
         candidates: dict[str, tuple[float, float]] = {}
         for front, name, rear in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
@@ -261,6 +272,7 @@ class _Lags:
             turn_gain = min(front_link.frames, rear_link.frames) * (
                 sum(row[self._zero_index] - row for row in variances) - front_link.chord - rear_link.chord
             )
+            turn_gain /= _SHARED_NOISE
             turn_gain[self._zero_index] = 0.0
             gained = turn_gain + paced.z_score**2 - ((self.lags - paced.lag) / paced.error) ** 2
             index = int(np.argmax(gained))
@@ -335,8 +347,10 @@ class _Lags:
         lags, errors = np.transpose(
             [self._by_pace(name, neighbour, half) for neighbour in midline_neighbours(chain, name)]
         )
-        error = float(np.sum(errors**-2.0) ** -0.5)
-        lag = float(np.average(lags, weights=errors**-2.0))
+        weights = errors**-2.0 / np.sum(errors**-2.0)
+        shares = weights * errors
+        error = float(np.sqrt((shares @ shares + np.sum(shares) ** 2) / 2))  # half the variance of each is the point's
+        lag = float(weights @ lags)
         return _Paced(lag, error, abs(lag) / error, float(np.min(np.sign(lag) * lags / errors)))
 
     def _by_pace(self, name: str, neighbour: str, half: int) -> tuple[float, float]:
@@ -368,7 +382,9 @@ class _Lags:
         )  # what is left over may go on from frame to frame
         count = max(1, use.sum() - X.shape[1] - 1)
         noise = max(float(residual @ residual) / count, (_EXACT * float(np.mean(link_length[use]))) ** 2)
-        return lag, float(np.sqrt(variance_inflation * noise / max(x @ x, 1e-300)))
+        chord = _PACED_CHORD * float(np.mean(link_length[use])) * bend / 16
+        variance = variance_inflation * noise + count * chord**2  # that of a chord does not become smaller with frames
+        return lag, float(np.sqrt(variance / max(x @ x, 1e-300)))
 
 
 def _moving_line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from suchus.animals.capture.poses import check_width
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, map_keypoint_names
 from suchus.core.errors import UnreadableFile
 from suchus.core.reading import read_text
@@ -76,6 +77,7 @@ def _trc(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarra
         raise UnreadableFile(f"{path} is no TRC file: its first line is not 'PathFileType 4 (X/Y/Z) ...'.")
     header = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=False))
     points = tuple(cell.strip() for cell in lines[3].split("\t")[2:] if cell.strip())
+    check_width(2 + 3 * len(points), path.name)
     try:
         rate, unit = float(header["DataRate"]), header["Units"].strip()
         rows = [line.split("\t") for line in lines[_HEADER:] if line.strip()]
@@ -138,8 +140,11 @@ def _c3d(path: Path) -> tuple[tuple[str, ...], np.ndarray, float, str, np.ndarra
             warnings.simplefilter("ignore")  # such as that there are no analog channels
             reader: Any = c3d.Reader(file)
             points = tuple(str(label).strip() for label in reader.point_labels)
+            check_width(3 * len(points), path.name)
             numbered_frames = [(number, points_of) for number, points_of, _ in reader.read_frames(copy=True)]
             rate, unit = float(reader.point_rate), str(reader.get("POINT:UNITS").string_value).strip().lower()
+    except UnreadableFile:
+        raise
     except Exception as error:
         raise UnreadableFile(
             f"{path} cannot be read as a C3D file: it is damaged, cut, or of another kind; export it again, or give a "

@@ -9,6 +9,7 @@ from scipy.ndimage import median_filter
 from suchus.animals.capture.tracks import Tracks
 
 _WINDOW = 0.015  # [film]; time over which displacements are taken
+_STEADY_FRAMES, _MAX_WINDOW = 8, 0.03  # the same in a short film: frames over which noise is small, at most [film]
 _MOVING_POINTS = 85.0  # percentile of the keypoints' displacements: in a cycle some keypoint always moves
 _WALK_PERCENTILE = 80.0  # of this over the film: the displacement of a walk
 _MAX_REST, _MIN_WALK = 0.15, 0.5  # displacement over that of the walk: at rest, and at the ends of a walk
@@ -74,7 +75,7 @@ def _activity(tracks: Tracks) -> tuple[Float[np.ndarray, " frame"], float]:
     The first is empty in too short a film.
     """
     frames = len(tracks.time)
-    half = max(2, round(_WINDOW * frames))
+    half = max(2, round(max(_WINDOW * frames, min(_STEADY_FRAMES, _MAX_WINDOW * frames))))
     if frames < 20 * half:
         return np.zeros(0), 0.0
     place = np.full_like(tracks.position, np.nan)

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from suchus.animals.capture.markers import SUFFIXES, read_markers, upright
-from suchus.animals.capture.poses import PoseTracks, read_pose_table, software_of
+from suchus.animals.capture.poses import PoseTracks, check_width, read_pose_table, software_of
 from suchus.animals.capture.retarget import Captured
 from suchus.animals.capture.table import is_table, read_table
 from suchus.animals.capture.tracks import UNITS, Tracks, UnusableTracks, View, map_keypoint_names
@@ -102,6 +102,7 @@ def _movement_poses(data: Any, path: Path, individual: str | None, rate: float |
         raise UnusableTracks(_NO_RATE.format(path.name))
     data = _select_individual(data, individual, path.name)
     dims = [d for d in data.position.dims if d not in ("time", "space")]
+    check_width(int(np.prod([data.sizes[d] for d in (*dims, "space")])), path.name)
     position = data.position.transpose("time", *dims, "space").values.astype(float)
     confidence = np.full(position.shape[:2], np.nan)
     if "confidence" in data:

@@ -249,7 +249,9 @@ class _Links:
     def max_deviation(self, pair: tuple[str, str], fraction: float) -> float:
         """Return the tolerance for the distance of a pair about its median."""
         noises = np.nan_to_num([self._noise[name] for name in pair])
-        typical_distance = min(float(np.nanmedian(self.distance(pair))), self._scale)
+        typical_distance = float(np.nanmedian(self.distance(pair)))
+        if "tail_tip" not in pair:  # a tail without keypoints between bends, and may be longer than the trunk
+            typical_distance = min(typical_distance, self._scale)
         return float(fraction * typical_distance + _NOISES * np.hypot(*noises)) + 1e-9
 
     def excess(self, pair: tuple[str, str]) -> float:

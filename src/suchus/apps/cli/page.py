@@ -9,7 +9,7 @@ from typing import Annotated
 import tyro
 
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.word_checks import check_page, option_values
+from suchus.apps.cli.word_checks import check_named_once, check_page, option_values
 from suchus.apps.laboratory.page import laboratory_page
 from suchus.core.files import check_name, check_replaceable
 from suchus.robot.design import Robot
@@ -46,6 +46,7 @@ def make_page(words: Sequence[str]) -> int:
         "is judged."
     )
     positional = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
+    check_named_once(positional, ("--robot", "--gait"), words)
     named = [word for pair in zip(("--robot", "--gait"), positional, strict=False) for word in pair]
     all_words = [*named, *words[len(positional) :]]
     options = parse(PageOptions, "suchus page", all_words, description)

@@ -11,6 +11,7 @@ import tyro
 
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
+from suchus.apps.cli.word_checks import check_named_once
 from suchus.apps.report.building_sheet import PAGE, floating_sentence, mass_sentences, write_parts
 from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
 from suchus.hardware import commands, straight
@@ -56,6 +57,7 @@ def list_parts(words: Sequence[str]) -> int:
         "DXF; URDF with ros2_control, controllers and a trajectory.\n\nusage: suchus parts ROBOT [options]"
     )
     positional = list(takewhile(lambda word: not word.startswith("-"), words[:1]))
+    check_named_once(positional, ("--robot",), words)
     robot_words = ["--robot", positional[0]] if positional else []
     options = parse(PartsOptions, "suchus parts", [*robot_words, *words[len(positional) :]], description)
     robot = options.robot

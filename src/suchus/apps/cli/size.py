@@ -13,6 +13,7 @@ import tyro
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.terminal import working
+from suchus.apps.cli.word_checks import check_named_once
 from suchus.apps.report.size_page import PAGE, answer, write_size
 from suchus.core.checks import require
 from suchus.core.files import check_name, check_replaceable, check_writable, digest, new_folder, versions
@@ -64,6 +65,7 @@ def size_servos(words: Sequence[str]) -> int:
         "usage: suchus size ROBOT GAIT ... [options]"
     )
     positional = list(takewhile(lambda word: not word.startswith("-"), words))
+    check_named_once(positional, ("--robot", "--gaits"), words)
     robot_words = ["--robot", positional[0]] if positional else []
     gait_words = ["--gaits", *positional[1:]] if len(positional) > 1 else []
     options = parse(SizeOptions, "suchus size", [*robot_words, *words[len(positional) :], *gait_words], description)

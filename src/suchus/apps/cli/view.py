@@ -11,7 +11,7 @@ import tyro
 from suchus.animals.capture import ReadingOptions, read_tracks
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
-from suchus.apps.cli.word_checks import option_values
+from suchus.apps.cli.word_checks import check_named_once, option_values
 from suchus.apps.viewer import Session
 from suchus.apps.viewer.replay import FilmedAnimal, Take, place_animal, takes
 from suchus.apps.viewer.swim import films, vortex_film
@@ -110,6 +110,7 @@ def _walk(words: Sequence[str]) -> int:
     """Read the options of a live walk, serve it until interrupted, and return 0."""
     description = "A robot walks live in the browser: change its gait, make joints fail, push it."
     positional = list(takewhile(lambda word: not word.startswith("-"), words[:2]))
+    check_named_once(positional, ("--robot", "--gait"), words)
     option_words = [
         argument for option, word in zip(("--robot", "--gait"), positional, strict=False) for argument in (option, word)
     ]

@@ -48,14 +48,34 @@ def option_values(words: Sequence[str], option: str) -> list[str]:
     return joined + [following for word, following in pairwise(words) if word == option]
 
 
-def check_page(path: Path) -> None:
+def check_named_once(positional: Sequence[str], options: Sequence[str], words: Sequence[str]) -> None:
+    """Refuse a word that names what an option names too.
+
+    Args:
+        positional: first words of a command, before its options.
+        options: option that each of them stands for.
+        words: all words.
+
+    Raises:
+        BadCommand: one of them is named twice.
+    """
+    for option, word in zip(options, positional, strict=False):
+        for value in option_values(words, option):
+            raise BadCommand(f"{word} and {option} {value} both name the {option.strip('-')}: give one of the two.")
+
+
+def check_page(path: Path, option: str = "--out") -> None:
     """Refuse a page whose file name does not end in .html.
+
+    Args:
+        path: the page.
+        option: option that names it.
 
     Raises:
         BadCommand: the name of its file does not end in .html.
     """
     if path.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
+        raise BadCommand(f"the page would be {path}; say {option} FILE.html.")
 
 
 def check_toml(path: Path, content: str) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, SuchusError
-from suchus.robot.design.ground import Bumps, Ground, Step, Stone
+from suchus.robot.design.ground import Bumps, Grains, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
 
 _MAX_NUMBER, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
@@ -355,6 +355,8 @@ def ground_text(ground: Ground | None) -> str:
     if ground is None:
         return ""
     text = {_GROUND_KEYS.get(name, name): value for name, value in asdict(ground).items()}
+    if ground.grains is None:  # as it was written before grounds had grains
+        del text["grains"]
     if ground.relief is not None:
         fields = asdict(ground.relief)
         if fields.get("scale") == 1.0:  # as it was written before bumps had a scale
@@ -378,7 +380,11 @@ def ground_of(record: xr.Dataset) -> Ground | None:
     try:
         names = {key: name for name, key in _GROUND_KEYS.items()}
         fields: dict[str, Any] = {names.get(key, key): value for key, value in json.loads(text).items()}
-        relief = fields.pop("relief")
-        return Ground(**fields, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
+        relief, grains = fields.pop("relief"), fields.pop("grains", None)
+        return Ground(
+            **fields,
+            relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief),
+            grains=None if grains is None else Grains(**grains),
+        )
     except (ValueError, KeyError, TypeError, AttributeError, SuchusError) as error:
         raise IncompatibleRecord(f"the record holds no ground that this suchus knows: {text[:120]!r}.") from error
