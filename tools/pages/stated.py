@@ -176,10 +176,15 @@ def _filled(block: str, width: int) -> str:
     )  # fmt: skip
 
 
+def _of_today(rows: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fractions of designs that today's rules judged; what another rule judged says nothing."""
+    return {claim: row for claim, row in rows.items() if claim in RULES and row.rule == RULES[claim].asked}
+
+
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
-             "unruled": UNRULED, "rules": RULES}  # fmt: skip
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "unruled": UNRULED, "rules": RULES}
+    known |= {"shares": _of_today(SHARES), "too_few": _of_today(SPARSE_SHARES)}
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 

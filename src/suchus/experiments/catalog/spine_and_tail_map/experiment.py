@@ -322,9 +322,9 @@ class SpineAndTailMap(Experiment):
         return self.render_explanation(
             measures,
             reach=listed_words(words, "gain", labels, ("farther", "less far")),
-            work=listed_words(words, "cost_ratio", labels, ("less work", "more work")),
-            supply=listed_words(words, "electrical_ratio", labels, ("less energy", "more energy")),
-            steady=listed_words(words, "margin_change", labels, ("a larger margin", "a smaller margin")),
+            work=listed_words(words, "cost_ratio", labels, ("less work", "more")),
+            supply=listed_words(words, "electrical_ratio", labels, ("less energy", "more")),
+            steady=listed_words(words, "margin_change", labels, ("a larger margin", "a smaller one")),
             most=labels[most],
             least=labels[least],
             largest_gain=gains[most],
@@ -375,7 +375,7 @@ def listed_words(
         for word in ("pays", "costs", "undecided")
     }
     favour, against = comparatives
-    text = f"{favour} in {len(of_word['pays'])} of {len(labels)} conditions"
+    text = f"{favour} in {len(of_word['pays'])} of {len(labels)}"
     for word, said in (("costs", against), ("undecided", "undecided")):
         cells = of_word[word]
         text += f", {said} in {len(cells)}" * bool(cells)
