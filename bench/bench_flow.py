@@ -203,6 +203,27 @@ def tell_patch(steps=6, rounds=4, cells=64):
     return found
 
 
+def tell_batch(count=64, cells=64, end_time=1.0):
+    """Print what a step of one of many small flows takes, on one thread [ms]."""
+    grid, found = flow.Grid(cells=(2 * cells, cells), cell=4 / cells, origin=(-2.0, -2.0)), {}
+    swing = flow.Oscillation(frequency=0.5, heave=(0.0, 0.1), pitch=0.3)
+    bodies = {
+        "cylinders at rest": flow.Body(shape=flow.Cylinder(diameter=1.0)),
+        "ellipses that move": flow.Body(shape=flow.Ellipse(length=1.0, width=0.3), motion=swing),
+    }
+    for label, body in bodies.items():
+        setup = flow.Setup(grid=grid, viscosity=0.01, stream=(1.0, 0.0), bodies=(body,), coarse=True)
+        start = perf_counter()
+        flows = flow.batch([setup] * count, end_time, thread_count=1, progress=False)
+        spent = (perf_counter() - start) / sum(sim.record.time.size for sim in flows)
+        found[f"batch_{label.split()[0]}"] = rate = prod(grid.cells) / spent / 1e6
+        print(
+            f"{count} flows of {' x '.join(map(str, grid.cells))}, {label}, one thread: {1e3 * spent:.2f} ms a step, "
+            f"{rate:.1f} M cells/s"
+        )
+    return found
+
+
 def tell_pieces(make, cells, threads, steps):
     """Print what each piece of a step takes, the faster half of its calls counting, and those of a pressure solve."""
     calls, inside, kept = defaultdict(list), [], []
@@ -306,6 +327,7 @@ def main():
     if not chosen.pieces:
         found |= in_form(tell_outline, partial(tell_outline, 48, 60, 1, 2))()
         found |= in_form(tell_patch, partial(tell_patch, 1, 2, 32))()
+        found |= in_form(tell_batch, partial(tell_batch, 2, 32, 0.05))()
         for cells in in_form((96, 128), ()):
             found |= tell_swim(cells, far)
     if chosen.keep and many > 1 and not chosen.pieces and not SHORT:

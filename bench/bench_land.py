@@ -7,6 +7,7 @@ The time is that of the processors, all threads together, so that other work on 
 
 import os
 import time
+from itertools import product
 
 import gymnasium
 import mujoco
@@ -49,15 +50,26 @@ def rolled(model, states: np.ndarray, commands: np.ndarray, warmstart=None) -> n
         return roll.rollout([model] * len(states), data, states, commands, initial_warmstart=warmstart)[0]
 
 
-def report(what: str, steps: int, raw, ours, begin=lambda: None) -> None:
-    """Print the steps per second of two tasks, timed in turns: what else the machine does then weighs on both."""
+def report(what: str, steps: int, raw, ours, begin=lambda: None, actions: int = 0) -> None:
+    """Print the steps per second of two tasks, timed in turns: what else the machine does then weighs on both.
+
+    Args:
+        what: what is timed, in words.
+        steps: physics steps of each task.
+        raw: MuJoCo's own rollout.
+        ours: the same by suchus.
+        begin: called before each pair.
+        actions: actions of environments in the second task, whose rate is printed too; 0 for none.
+    """
     pairs = []
     for _ in range(REPEATS):
         begin()
         pairs.append((timed(raw), timed(ours)))
     raw_time, our_time = np.median(pairs, axis=0)
     ratio = np.median([bare / full for bare, full in pairs])
-    print(f"{what}: rollout {steps / raw_time:8.0f} steps/s, suchus {steps / our_time:8.0f} steps/s, ratio {ratio:.2f}")
+    rate = f", {actions / our_time:6.0f} actions/s" if actions else ""
+    rates = f"rollout {steps / raw_time:8.0f} steps/s, suchus {steps / our_time:8.0f} steps/s, ratio {ratio:.2f}"
+    print(f"{what}: {rates}{rate}")
 
 
 def batches() -> None:
@@ -80,11 +92,17 @@ def batches() -> None:
         )
 
 
-def environments(count: int, actions: int) -> None:
-    """Time so many environments over so many actions."""
-    env = gymnasium.make_vec("suchus/Crawl-v0", num_envs=count).unwrapped
+def environments(count: int, actions: int, *, fast: bool) -> None:
+    """Time so many environments over so many actions.
+
+    Args:
+        count: number of environments.
+        actions: number of actions of each.
+        fast: whether contacts are solved in less time and with less accuracy.
+    """
+    env = gymnasium.make_vec("suchus/Crawl-v0", num_envs=count, fast=fast).unwrapped
     policy = GaitFollower(task=env.task, centre=tuple(env.pack.centre), gait=env.task.gait)
-    loop, steps = env.pack.loop, round(env.pack.loop.period / env.task.timestep)
+    loop, steps = env.pack.loop, env.pack.loop.steps
     batch, advance, commands, played = loop.batch, loop.advance, [], []
 
     def kept(**how) -> None:
@@ -112,12 +130,14 @@ def environments(count: int, actions: int) -> None:
         for action in played:
             env.step(action)
 
+    timestep = loop.period / steps
     report(
-        f"{count:3d} environments over {actions} actions at {env.task.timestep} s",
+        f"{count:3d} environments over {actions} actions at {timestep:g} s{', fast' if fast else ''}",
         controls.shape[0] * controls.shape[1],
         lambda: rolled(batch.model, states, controls, warmstart),
         ours,
         lambda: env.reset(seed=0),
+        count * actions,
     )
 
 
@@ -128,8 +148,8 @@ def main() -> None:
     )
     print(f"processor time, median of {REPEATS} pairs")
     batches()
-    for count, actions in ACTIONS.items():
-        environments(count, actions)
+    for fast, (count, actions) in product((False, True), ACTIONS.items()):
+        environments(count, actions, fast=fast)
 
 
 def _first_state(model: mujoco.MjModel, record, run: int) -> np.ndarray:

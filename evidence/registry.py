@@ -6,7 +6,17 @@ from functools import partial
 from types import MappingProxyType
 from typing import Any
 
-from evidence import built, converge, filmed_crawl, page_measures, policies, probes, servo_loads, tolerance, wall_model
+from evidence import (
+    built,
+    converge,
+    filmed_crawl,
+    page_measures,
+    probes,
+    servo_loads,
+    tolerance,
+    untrained_policies,
+    wall_model,
+)
 from evidence.tolerance import Bounded
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.robots import ROBOTS
@@ -19,7 +29,7 @@ FORMS: Mapping[str, tuple[str, Mapping[str, Any]]] = MappingProxyType(
     }
 )
 """Experiment and settings of each result that is an experiment in full."""
-SEARCHES = ("crawl", "lifted", "stand", "thrift", "turn")
+SEARCHES = ("crawl", "fault", "lifted", "stand", "thrift", "turn")
 """Searches whose outcome is kept, as ``optimise_NAME``."""
 _SWIMS = ("suchus.experiments.catalog.swim_free", "suchus.swimming.coupling", "suchus.flow")
 _ATLAS = "evidence.atlas"
@@ -130,8 +140,8 @@ _OTHERS = (
         for name, compute in page_measures.SOURCES.items()
     ),
     Kept(
-        name="policies", modules=("suchus.apps.envs",), compute=policies.measured, renew="make renew NAME=policies",
-        probe=partial(policies.body_results, "caiman"),
+        name=untrained_policies.NAME, modules=("suchus.apps.envs",), compute=untrained_policies.measured,
+        probe=partial(untrained_policies.body_results, "caiman"), renew=f"make renew NAME={untrained_policies.NAME}",
     ),
     Kept(
         name="filmed_crawl", modules=("suchus.animals.capture", "suchus.sim.land"), compute=filmed_crawl.measured,

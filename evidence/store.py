@@ -1,7 +1,6 @@
 """Kept results: ``results/NAME.json`` holds the numbers, what made them, and a probe that tells when they are old."""
 
 import json
-import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib.metadata import version
@@ -12,7 +11,7 @@ from evidence import tolerance
 from evidence.tolerance import Bounded
 from suchus.core import machine
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.core.files import new_file
+from suchus.core.files import commit_of, new_file
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "results"
@@ -158,10 +157,4 @@ def save_part(name: str, values: Any, folder: Path | None = None) -> Path:
 
 def commit() -> str:
     """Return the abbreviated commit of the checkout, with ``+`` where files differ from it; empty outside of git."""
-    told = []
-    for words in (("rev-parse", "--short=10", "HEAD"), ("status", "--porcelain", "--", "src", "evidence")):
-        done = subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
-        if done.returncode:
-            return ""
-        told.append(done.stdout.strip())
-    return told[0] + "+" * bool(told[1])
+    return commit_of(ROOT, "src", "evidence")

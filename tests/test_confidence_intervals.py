@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from suchus.core.intervals import CONFIDENCE, fraction_interval, median_interval, min_median_count
+from suchus.core.intervals import (
+    CONFIDENCE,
+    fraction_interval,
+    look_confidence,
+    median_interval,
+    min_median_count,
+    planned_looks,
+)
 
 METHODS = {"exact": "exact", "wilson": "wilson"}
 
@@ -73,3 +80,58 @@ def test_too_few_or_infinite_values_leave_the_interval_unknown():
     for values in ([], [1.0], range(5), [*range(11), np.nan]):
         assert np.isnan(median_interval(values)).all()
     assert median_interval([1.0] * 6) == (1.0, 1.0)
+
+
+def test_sampling_may_end_after_half_of_the_repeats():
+    assert [planned_looks(count) for count in (1, 2, 4, 9, 32)] == [(1,), (1, 2), (2, 4), (5, 9), (16, 32)]
+    assert look_confidence(1) == CONFIDENCE
+    assert look_confidence(2) == pytest.approx(0.975)
+
+
+def sequential_coverage(fractions, bound, count, confidence):
+    """Return how often the interval at which sampling ends contains each fraction, summed over all outcomes.
+
+    Sampling ends as soon as the interval of a look lies to one side of the bound.
+    """
+    first, last = planned_looks(count)
+    early_ends, late_ends = (
+        np.array([fraction_interval(n, trials, confidence=confidence) for n in range(trials + 1)])
+        for trials in (first, last)
+    )
+    early, late = np.arange(first + 1), np.arange(last - first + 1)
+    early_chance = stats.binom.pmf(early[:, None], first, fractions)
+    late_chance = stats.binom.pmf(late[:, None], last - first, fractions)
+    early_holds, late_holds = (
+        (ends[:, :1] <= fractions) & (fractions <= ends[:, 1:]) for ends in (early_ends, late_ends)
+    )
+    goes_on = (early_ends[:, 0] <= bound) & (bound <= early_ends[:, 1])
+    coverage = (early_chance * early_holds)[~goes_on].sum(axis=0)
+    for successes in early[goes_on]:
+        coverage += early_chance[successes] * (late_chance * late_holds[successes + late]).sum(axis=0)
+    return coverage
+
+
+@pytest.mark.parametrize("count", [16, 32])
+def test_intervals_contain_every_fraction_wherever_sampling_ends(count):
+    fractions, bounds = np.linspace(0.01, 0.99, 197), np.linspace(0.05, 0.95, 19)
+    held = [sequential_coverage(fractions, bound, count, look_confidence(2)) for bound in bounds]
+    assert np.min(held) >= CONFIDENCE
+    once = [sequential_coverage(fractions, bound, count, CONFIDENCE) for bound in bounds]
+    assert np.min(once) < CONFIDENCE  # why each look needs more confidence than one interval alone
+
+
+@pytest.mark.parametrize("draw", ["lognormal", "standard_cauchy"])
+@pytest.mark.parametrize("distance", [0.0, 0.3])
+def test_intervals_contain_the_median_wherever_sampling_ends(draw, distance):
+    """Sampling ends as soon as the interval of a look lies to one side of a bound near the median."""
+    rng = np.random.default_rng(11)
+    true_median = {"lognormal": 1.0, "standard_cauchy": 0.0}[draw]
+    bound, looks, count = true_median + distance, planned_looks(24), 4000
+    contains = np.zeros(count, dtype=bool)
+    for number, sample in enumerate(getattr(rng, draw)(size=(count, looks[-1]))):
+        for look in looks:
+            low, high = median_interval(sample[:look], confidence=look_confidence(len(looks)))
+            if low > bound or high < bound:
+                break
+        contains[number] = low <= true_median <= high
+    assert contains.mean() >= CONFIDENCE - 3.0 * np.sqrt(CONFIDENCE * (1.0 - CONFIDENCE) / count)

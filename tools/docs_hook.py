@@ -80,6 +80,7 @@ def _named(output: str) -> str:
 
 
 def _filled(entry: Any) -> Any:
+    """Return an entry of the menu, and all below it, with the pages that are made of the code in their places."""
     match entry:
         case {"API reference": _}:
             rooms = [{f"suchus.{room}": f"api/{room}.md"} for room in rooms_of_code()]
@@ -87,6 +88,10 @@ def _filled(entry: Any) -> Any:
         case {"Examples": _}:
             shown = [{one.short: f"examples/{one.stem}.md"} for one in gallery.examples()]
             return {"Examples": ["examples/index.md", *shown]}
+        case dict():
+            return {title: _filled(below) for title, below in entry.items()}
+        case list():
+            return [_filled(below) for below in entry]
         case _:
             return entry
 

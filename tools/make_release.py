@@ -3,7 +3,7 @@
 Everything is tried in fresh environments in a folder outside the checkout whose name has a space, without constraints:
 ``suchus doctor``, ``suchus demo --no-browser``, ``suchus page`` with the wheel's engine, one experiment, all of them in
 their quick forms, and the Dockerfile's steps. It is built twice, to the same bytes, with the versions of
-``release/pins.txt``, and a bill of materials stands beside it. A commit whose files or tag say another version is
+``release/pins.txt``. A commit whose files or tag say another version is
 refused first; with ``--check`` nothing else is done, and with ``--tag`` the commit is tagged. Nothing is published;
 docs/publishing.md says how that is done.
 """
@@ -101,23 +101,11 @@ def _tried(wheel: Path, place: Path) -> None:
     where = run([user.bin / "python", "-c", "import suchus; print(suchus.__file__)"], cwd=work).strip()
     if not Path(where).is_relative_to(place):
         raise Failed(f"what was tried is {where}, not what was built.")
-    _told_what_is_in_it(user, Environment(place / "tools"), wheel)
     for words in _WORDS:
         _, seconds = user.suchus(*words, cwd=work)
         print(f"suchus {' '.join(words)}: {seconds:.1f} s")
     if missing := [name for name in _LEFT if not (work / name).is_file()]:
         raise Failed(f"{', '.join(missing)} was not written.")
-
-
-def _told_what_is_in_it(user: Environment, tools: Environment, wheel: Path) -> None:
-    """Write a bill of materials beside the wheel: every package that a user gets with it, with version and licence."""
-    if not tools.pip_if_served("cyclonedx-bom"):
-        print("cyclonedx-bom is not to be had: there is no bill of materials.")
-        return
-    bill = wheel.with_suffix(".cdx.json")
-    words = ["cyclonedx_py", "environment", "--output-reproducible", "--output-file", bill, user.bin / "python"]
-    run([tools.bin / "python", "-m", *words], cwd=user.folder.parent)
-    print(f"bill of materials: {bill.name}")
 
 
 def _contained(place: Path) -> None:

@@ -1,4 +1,4 @@
-"""How often the intervals of ``suchus capture`` hold the truth, and the passage of docs/capture.md that says so.
+"""How often the intervals of ``suchus capture`` hold the truth, and the passage of docs/capture_evidence.md on it.
 
 ``python tests/capture/intervals.py [COUNT]``; stopped early, what was read until then counts, and the next call goes on
 behind it if neither the reading nor the animals have changed.
@@ -21,7 +21,7 @@ from pages.passages import put  # noqa: E402
 FIRST, COUNT = 2000, 200
 """Number of the first animal of ``menagerie.ailing``, and how many there are."""
 KEPT = Path(__file__).with_name("intervals.json")
-PAGE = ROOT / "docs" / "capture.md"
+PAGE = ROOT / "docs" / "capture_evidence.md"
 READS = tuple(
     f"animals/capture/{name}.py"
     for name in (

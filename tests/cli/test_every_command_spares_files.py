@@ -137,6 +137,7 @@ CASES = {
     "capture": [
         Case(words=("capture", "walk.csv", "--out", "made/walk.toml", "--tables", "made/tables"), needs=("walk.csv",)),
         Case(words=("capture", "walk.csv", "--forces", "made/forces"), needs=("walk.csv",), long=True),
+        Case(words=("capture", "walk.gif", "--digitise", "made/points.html"), needs=("walk.gif",)),
     ],
     "view": [],
     "page": [Case(words=("page", "strider", "--out", "made/it.html"), doubles=no_engine)],
@@ -263,6 +264,9 @@ def give(name, inputs, desk):
     if not kept.exists():
         if name == "walk.csv":
             kept.write_text(film())
+        elif name == "walk.gif":
+            shots = [Image.new("L", (8, 8), shade) for shade in (0, 255)]
+            shots[0].save(kept, save_all=True, append_images=shots[1:], duration=40)
         elif name == "walk.nc":
             run = Run(robot=ROBOTS["caiman"], gait=GAITS["belly_crawl"])
             save(simulate([run], duration=1.0, timestep=0.01), kept)

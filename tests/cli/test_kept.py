@@ -11,6 +11,7 @@ from suchus.apps.cli import main
 from suchus.apps.cli.reproduce import ExperimentTask, attempt, reusable_result
 from suchus.apps.report import Result
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.claims import RULES
 from suchus.experiments.experiment import silent
 
 origin = sys.modules["suchus.core.files.provenance"]
@@ -86,7 +87,7 @@ def test_the_digest_of_the_package_follows_every_file(tmp_path, monkeypatch):
 def test_what_reproduce_leaves_out_judges_nothing_and_is_named_in_the_docs():
     left_out = [name for name, one in EXPERIMENTS.items() if not one.reproduces]
     assert left_out
-    assert [name for name in left_out if EXPERIMENTS[name].claims] == []
+    assert [name for name in left_out if {*EXPERIMENTS[name].claims} & {*RULES}] == []  # hypotheses of its own may be
     named = ", ".join(f"`{name}`" for name in left_out[:-1]) + f" and `{left_out[-1]}`"
     page = (Path(__file__).parents[2] / "docs" / "command_line.md").read_text(encoding="utf-8")
     assert f"runs every experiment but {named}, " in page

@@ -82,5 +82,5 @@ def test_the_lines_of_the_page_print_what_it_says(tmp_path, programs):
     code = (
         "import sys; sys.path.insert(0, sys.argv[1]); from pages import blocks; blocks.follow(open(sys.argv[2]).read())"
     )
-    done = programs.run(["-c", code, ROOT / "tools", ROOT / "docs" / "asked_elsewhere.md"], cwd=tmp_path)
+    done = programs.run(["-c", code, ROOT / "tools", ROOT / "docs" / "peers.md"], cwd=tmp_path)
     assert done.returncode == 0, done.stderr[-2000:]

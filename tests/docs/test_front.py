@@ -109,7 +109,7 @@ def test_the_readme_begins_with_what_one_gets_a_picture_that_moves_and_how_to_in
     assert rest.index("pip install .") < rest.index("package index")
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/getting_started.md", "docs/command_line.md", "docs/lessons.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md", "docs/command_line.md", "docs/lessons.md"])
 def test_commands_are_ones_that_there_are(page):
     text = (ROOT / page).read_text(encoding="utf-8")
     lines = [line for block in blocks(text) if block.language == "sh" for line in block.text.splitlines()]

@@ -11,22 +11,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.parametrize(
     "page",
-    [
-        "index",
-        "extending",
-        "getting_started",
-        "own_robot",
-        "own_gait",
-        "own_experiment",
-        "own_fault",
-        "own_controller",
-        "own_command",
-        "own_protocol",
-        "own_shape",
-        "own_side",
-        "own_scheme",
-        "projects",
-    ],
+    ["index", "extending", "own_robot", "own_experiment", "own_flow"],
 )
 def test_following_the_page_gives_what_it_says(page, tmp_path, programs):
     code = (

@@ -15,10 +15,7 @@ from pages.blocks import blocks
 from suchus.core.sources import SHELVES
 
 ROOT = Path(__file__).parents[2]
-PAGES = (
-    "own_robot", "own_gait", "own_fault", "own_experiment", "own_controller", "own_command", "own_protocol",
-    "extending",
-)  # fmt: skip
+PAGES = ("own_robot", "own_experiment", "extending")
 BATTERIES = {
     "robots": ("tests/shelves/test_robots.py",),
     "gaits": ("tests/shelves/test_gaits.py",),

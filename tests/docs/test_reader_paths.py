@@ -20,7 +20,7 @@ MADE = {"questions.md", "verdicts.md", "paper_map.md", "misprints.md", "api/inde
 
 def paths(page):
     """The steps of each reader, by heading."""
-    parts = re.split(r"^## (.+)\n", page, flags=re.M)
+    parts = re.split(r"^### (.+)\n", page, flags=re.M)
     return {
         title: re.findall(r"^(\d+)\. (.*?)(?=^\d+\. |\Z)", text, re.M | re.S)
         for title, text in zip(parts[1::2], parts[2::2], strict=True)
@@ -72,7 +72,7 @@ def test_a_dead_end_is_noticed():
     assert wrong_command(["suchus", "run", "flying"]) == "no experiment flying"
     assert wrong_command(["suchus", "export-commands", "flying"]) == "no gait flying"
     assert "own_wing.md" not in pages()
-    assert len(paths("## Start\n\n1. one\n2. two\n   more\n")["Start"]) == 2
+    assert len(paths("### Start\n\n1. one\n2. two\n   more\n")["Start"]) == 2
 
 
 def test_every_page_to_follow_stands_among_the_extension_points():

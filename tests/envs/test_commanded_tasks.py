@@ -26,7 +26,7 @@ from suchus.robot.control.policy import mirror_shift
 from suchus.robot.design import layout
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Ground, Tolerances
+from suchus.sim.land import Ground, Limp, Persistence, Tolerances
 from suchus.sim.land.lake import gravity
 from suchus.sim.model import compile_model
 
@@ -37,6 +37,19 @@ STRIDER = replace(VELOCITY.for_robot(ROBOTS["strider"]), **AS_DESIGNED)
 
 def follower(task, env):
     return GaitFollower(task=task, centre=tuple(env.pack.centre), gait=task.gait)
+
+
+def test_spells_of_an_intermittent_fault_differ_between_episodes_and_repeat_with_the_seed():
+    flickers = Limp("LF_yaw", persistence=Persistence(rate=1.0, length=0.2, seed=3))
+    stays = Limp("LF_yaw", persistence=Persistence(duration=1.0, seed=3))
+    breaks, robot = Breaks(faults=(flickers,)), ROBOTS["caiman"]
+    random = np.random.default_rng(0)
+    drawn = [breaks.draw(random, robot).persistence for _ in range(5)]
+    assert len({persistence.seed for persistence in drawn}) == 5
+    assert {replace(persistence, seed=3) for persistence in drawn} == {flickers.persistence}
+    again = np.random.default_rng(0)
+    assert [breaks.draw(again, robot).persistence for _ in range(5)] == drawn
+    assert Breaks(faults=(stays,)).draw(random, robot) == stays
 
 
 def test_velocity_is_known_to_gymnasium_and_shows_what_a_robot_measures():

@@ -86,6 +86,16 @@ def test_the_frames_that_are_drawn_are_those_of_the_tables(outcomes):
     figure = MODULES["leg_kinematics"].draw(outcomes["leg_kinematics"])["frames"]
     words = {text.get_text() for text in figure.axes[0].texts}
     assert {f"${name}_{i}$" for name in "XZ" for i in range(5)} <= words
+    assert {word for word in words if word.startswith("$a_")} == {"$a_0$", "$a_2$", "$a_3$"}  # a_1 is 0
+    assert {word for word in words if "theta" in word} == {rf"$\theta_{i}$" for i in (1, 2, 3)}  # the foot has none
+
+
+def test_the_angles_that_are_drawn_are_those_of_the_joints(outcomes):
+    """The arc of each joint subtends, seen along its axis, the angle of the posture that is drawn."""
+    axes = outcomes["spine_kinematics"].record.frame_axis.values
+    for i, angle in enumerate(SPINE_SHOWN, start=1):
+        before, x, z = axes[i - 1, 0], axes[i, 0], axes[i, 2]
+        assert np.arctan2(x @ np.cross(z, before), x @ before) == pytest.approx(angle, abs=1e-12)
 
 
 def test_printed_leg_inverse_holds_in_a_quarter_and_ours_everywhere(outcomes):

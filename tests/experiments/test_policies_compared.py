@@ -87,6 +87,33 @@ def test_the_words_follow_the_numbers():
     assert "error is larger undisturbed and with more mass" in words
 
 
+def test_commands_that_half_of_the_robots_do_not_follow_are_named():
+    question = replace(
+        QUESTION, arms=("policy", "open_loop"), speeds=(0.4, 0.8), turns=(0.0, 1.0), test_speed=0.8, faults=(),
+        disturbances=(),
+    )  # fmt: skip
+    cases = question.cases()
+    commands = np.array([[case.speed, case.turn] for case in cases])
+    speed = np.repeat(commands[None, :, :1], 6, axis=2) + np.zeros((2, 1, 1))
+    turn = np.repeat(commands[None, :, 1:], 6, axis=2) + np.zeros((2, 1, 1))
+    turn[0, 1, :4] -= 0.25 * question.judged_policy.max_turn
+    turn[0, 3, :2] -= 0.25 * question.judged_policy.max_turn
+    dims = ("arm", "case", "robot")
+    record = xr.Dataset(
+        {"speed": (dims, speed), "turn": (dims, turn), "fallen": (dims, 0.0 * speed), "cost": (dims, 1.0 + speed)},
+        coords={
+            "arm": ["policy", "open_loop"],
+            "condition": ("case", [case.condition for case in cases]),
+            "commanded_speed": ("case", commands[:, 0]),
+            "commanded_turn": ("case", commands[:, 1]),
+        },
+        attrs={"max_speed": 0.25, "max_turn": question.judged_policy.max_turn, "goal": 0.2},
+    )
+    values = {name: measure.value for name, measure in question.measure(record).items()}
+    assert question.missed_commands(values) == [cases[1]]
+    assert "The policy does not follow 0.10 m/s with +0.30 rad/s." in explained(question, record)
+
+
 def explained(question, record):
     return question.explain({name: measure.value for name, measure in question.measure(record).items()})
 
@@ -105,7 +132,7 @@ def test_the_gait_by_hand_gets_frequency_and_strokes_in_proportion():
 def test_all_controls_get_the_same_robots():
     case = Case("heavier", 0.1, 0.0)
     runs = [QUESTION._run(*QUESTION._control(arm, case, CALIBRATION), "heavier", 7) for arm in QUESTION.arm_names()]
-    assert len(runs) == 4
+    assert len(runs) == len(QUESTION.arm_names()) > 4
     assert len({run.robot for run in runs}) == len({run.zero_error for run in runs}) == 1
     gait, control = QUESTION._control("policy", case, CALIBRATION)
     light = QUESTION._run(gait, control, "undisturbed", 7)
@@ -114,14 +141,27 @@ def test_all_controls_get_the_same_robots():
 
 
 def test_a_policy_that_reads_failures_walks_told_and_untold():
-    reading = replace(POLICIES["velocity_untold"], readings=("command", "failure"), layers=(), actions=(), spans=())
-    question = replace(QUESTION, fault_policy=reading)
-    assert question.arm_names() == ("policy", "fault_policy", "fault_policy_told", "open_loop", "feedback")
+    reading = replace(
+        POLICIES["velocity_untold"],
+        readings=("command", "failure"),
+        layers=(),
+        actions=(),
+        spans=(),
+        replicates=(),
+    )
+    question = replace(QUESTION, fault_policy=reading, arms=("policy", "fault_policy", "untold_policy", "feedback"))
+    assert question.arm_names() == ("policy", "fault_policy", "fault_policy_told", "untold_policy", "feedback")
     case = Case("limp_LF_yaw", 0.1, 0.0)
     told, untold = (question._control(f"fault_policy{end}", case, CALIBRATION)[1] for end in ("_told", ""))
     assert told == Learned(policy=reading, forward=0.1, failures=((START, "LF_yaw"),))
     assert untold == Learned(policy=reading, forward=0.1)
-    assert QUESTION.arm_names() == ("policy", "fault_policy", "open_loop", "feedback")
+    assert question._control("untold_policy", case, CALIBRATION)[1].policy.task == "velocity_untold"
+    assert replace(question, untold_policy=reading).arm_names() == (
+        "policy",
+        "fault_policy",
+        "fault_policy_told",
+        "feedback",
+    )
 
 
 def test_each_robot_gets_its_own_policy_or_a_sentence(tmp_path):

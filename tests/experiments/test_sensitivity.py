@@ -92,8 +92,9 @@ def test_what_depends_on_the_design_is_said():
     counts = {"samples_walked": 20, "samples_outside_limits": 4, "samples_impossible": 0, "samples_came_apart": 0}
     words = FULL.explain(rows | shares | counts | {"compared_with_shipped": 0, "shipped_agreement_chance": np.nan})
     assert words == (
-        "Of 24 designs 20 walk. Of the 3 claims 1 hold in at least nine of ten (spine swing: 18 of 20); 1 hold in "
-        "one of ten at most (com fluctuation: 2 of 20); 1 depend on the design (tail swing: 10 of 20)."
+        "Of 24 designs 20 walk. Of the 3 claims 1 hold in at least nine of ten, 1 hold in one of ten at most and 1 "
+        "depend on the design. These hold in at least nine of ten (spine swing: 18 of 20). These hold in one of ten at "
+        "most (com fluctuation: 2 of 20). These depend on the design (tail swing: 10 of 20)."
     )
 
 

@@ -166,7 +166,7 @@ def rough_record(*, ahead=(True, True, False), met=1.0):
         {name: (("ground", "arm", "seed"), v) for name, v in (values | {"forward": forward, "met": met_by}).items()}
         | {name: (("change", "surface"), v) for name, v in changes.items()}
         | {"flat_cost": (("flat_arm", "robot_built"), flat_cost)}
-        | {"height": ("ground", [0.0, 0.03, 0.03, 0.04]), "size_of_robot": ((), 1.0)},
+        | {"height": ("ground", [0.0, 0.03, 0.03, 0.04]), "size_of_robot": ((), 1.0), "looks": ((), 1)},
         coords={"arm": arms, "kind": ("ground", ["bumps", "bumps", "step", "stone"]), "surface": ["even", "bumps"]}
         | {"flat_arm": list(FLAT_ARMS)},
     )

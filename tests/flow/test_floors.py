@@ -1,13 +1,21 @@
-"""Bodies near walls: added mass, the flow of a body and its mirror image, the film of water, and contact."""
+"""Bodies near walls and floors: added mass, mirror images, the film of water, contact, landing, and what is refused."""
+
+import re
 
 import numpy as np
 import pytest
 
 from suchus import flow
+from suchus.core.errors import Doubtful, InvalidDesign
 from suchus.flow import contact
 from suchus.flow.sides import NAMES
 
 CIRCLE = flow.Cylinder(diameter=1.0)
+
+
+def beside(distance):
+    """A pose in which a circle's surface is so far above y = 0 [m]."""
+    return flow.Pose(position=(0.0, 0.5 + distance))
 
 
 # --- water between a body and a wall ---------------------------------------------------------------------------
@@ -155,3 +163,86 @@ def test_bodies_in_space_are_pushed_alike_and_apart_and_by_a_floor():
     floor = flow.Sides(low=flow.Wall())
     force = pushed(ball, flow.Pose(position=(1.0, 1.0, 0.6)), floor, grid, law)
     assert force[2] == pytest.approx(10.0 * 2 * np.pi * 0.5 * 0.2 * depth**3 / 3, rel=0.15)
+    assert np.abs(np.delete(force, 2)).max() < 0.02 * force[2]
+
+
+# --- landing ---------------------------------------------------------------------------------------------------
+
+
+def landing(body, *, law, cell=1 / 8, until=4.0, viscosity=0.05, sides=None, width=2.0):
+    sides = sides or flow.Sides(bottom=flow.Wall())
+    grid = flow.Grid.covering((-width, width), (0.0, 3.0), cell=cell, sides=sides)
+    setup = flow.Setup(grid=grid, viscosity=viscosity, bodies=(body,), sides=sides, contact=law, coarse=True)
+    sim = flow.Simulation(setup)
+    return sim, sim.run(until, progress=False)
+
+
+def test_a_disc_lands_on_a_floor_and_rests_where_the_contact_bears_its_weight():
+    law = flow.BodyContact(gap=0.3, pressure=20.0)
+    body = flow.FreeBody(shape=CIRCLE, start=(0.0, 1.2), density=1.5, gravity=(0.0, -1.0))
+    sim, record = landing(body, law=law, until=10.0, viscosity=0.2)
+    height = record.column("y") - 0.5
+    assert height.min() > 0.125  # one cell
+    assert abs(record.column("velocity_y")[-1]) < 0.01
+    assert np.abs(record.column("x")).max() < 0.02
+    outline = CIRCLE.markers(0.0, sim.pose("body"), 1 / 64)
+    force = contact.forces(law, [outline], [np.array(sim.pose("body").position)], sim._walls)[0]
+    assert force[1] == pytest.approx(0.5 * np.pi / 4, rel=0.1)
+
+
+def test_ground_effect_slows_a_body_before_it_touches():
+    """Far from the contact's gap, the film of water brakes: the fall is slower than the same one without a floor."""
+    body = flow.FreeBody(shape=flow.Ellipse(length=1.0, width=0.45), start=(0.0, 0.8), density=1.5, gravity=(0.0, -1.0))
+    law = flow.BodyContact(gap=0.26, pressure=40.0)
+    _, above = landing(body, law=law, until=1.6)
+    deep = flow.FreeBody(shape=body.shape, start=(0.0, 2.0), density=1.5, gravity=(0.0, -1.0))
+    _, free = landing(deep, law=law, until=1.6)
+    k = int(np.searchsorted(above.column("y")[::-1], 0.6))
+    time = above.time[::-1][k]
+    speed, free_speed = (np.interp(time, r.time, -r.column("velocity_y")) for r in (above, free))
+    assert speed < 0.95 * free_speed
+
+
+# --- bad input -------------------------------------------------------------------------------------------------
+
+
+def test_a_body_that_is_thrown_through_a_floor_is_refused_with_the_contact_that_holds_it():
+    def thrown(law):
+        body = flow.FreeBody(shape=CIRCLE, start=(0.0, 1.2), density=20.0, velocity=(0.0, -3.0), gravity=(0.0, -1.0))
+        return landing(body, law=law, until=0.6)
+
+    with pytest.warns(Doubtful, match=r"body is .* cells from the bottom side: nearer than one cell"):  # noqa: SIM117
+        with pytest.raises(InvalidDesign, match=r"body lies .* m deep in the bottom side, a Wall at y = 0 m") as caught:
+            thrown(None)
+    text = str(caught.value)
+    assert "\n" not in text
+    gap, pressure = map(float, re.search(r"BodyContact\(gap=([\d.]+), pressure=([\d.e+]+)\)", text).groups())
+    _, record = thrown(flow.BodyContact(gap=gap, pressure=pressure))
+    assert record.column("velocity_y").max() > 0  # it has turned round
+    with pytest.warns(Doubtful), pytest.raises(InvalidDesign, match=r"whose pressure is now 0\.1 Pa"):
+        thrown(flow.BodyContact(gap=gap, pressure=0.1))
+
+
+def test_a_body_that_begins_in_a_floor_or_is_moved_through_it_is_refused():
+    sides = flow.Sides(bottom=flow.Wall())
+    grid = flow.Grid.covering((-2.0, 2.0), (0.0, 3.0), cell=1 / 8, sides=sides)
+
+    def run(motion):
+        body = flow.Body(shape=CIRCLE, motion=motion)
+        flow.Simulation(flow.Setup(grid=grid, viscosity=0.05, bodies=(body,), sides=sides, coarse=True)).run(
+            1.0, progress=False
+        )
+
+    with pytest.raises(InvalidDesign, match=r"t = 0 s body lies 0\.09.* m deep in the bottom side.*give a motion"):
+        run(beside(-0.1))
+    with pytest.warns(Doubtful, match="nearer than one cell"), pytest.raises(InvalidDesign, match="give a motion"):
+        run(flow.Glide(start=(0.0, 1.0), velocity=(0.0, -1.0)))
+    with pytest.raises(InvalidDesign, match="outside the grid"):
+        run(flow.Pose(position=(0.0, -0.6)))
+
+
+def test_open_sides_keep_their_distance_and_the_sentence_says_which_sides_need_none():
+    grid = flow.Grid.covering((-2.0, 2.0), (0.0, 3.0), cell=1 / 8)
+    body = flow.Body(shape=CIRCLE, motion=beside(0.3))
+    with pytest.raises(InvalidDesign, match=r"on each open side\).*make the side a Wall\(\) or a Slip\(\)"):
+        flow.Simulation(flow.Setup(grid=grid, viscosity=0.05, bodies=(body,), coarse=True))

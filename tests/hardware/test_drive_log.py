@@ -8,6 +8,7 @@ from tests.hardware.test_drive import GAIT, Drive
 from tests.wires import wiring
 
 from suchus.apps.cli import main
+from suchus.apps.report import save_outcome
 from suchus.core.errors import BusFailure
 from suchus.core.files import check_replaceable, load
 from suchus.core.stopping import deferred_signals
@@ -113,6 +114,16 @@ def test_ctrl_c_while_figures_are_drawn_leaves_a_signed_log_and_the_command_runs
     assert main(WORDS) == 0
     assert (desk / "out/drive_belly_crawl/index.html").is_file()
     assert [path.name for path in (desk / "out").iterdir()] == ["drive_belly_crawl"]
+
+
+def test_a_log_that_begins_with_the_way_to_the_first_posture_is_drawn(tmp_path):
+    """Nearly every real robot stands otherwise at first, and gets there before time zero."""
+    log = Drive(start=0.3).go()
+    assert log.time.values[0] < -0.5
+    experiment = Driven(robot=ROBOTS["caiman"], gait=GAIT, control="open", stop="sag")
+    outcome = experiment.tell(log, 1.0)
+    save_outcome(outcome, experiment.draw(outcome), experiment, tmp_path / "drive", command="suchus drive")
+    assert (tmp_path / "drive" / "index.html").is_file()
 
 
 def test_an_earlier_log_stays_until_the_new_one_has_its_page(desk, monkeypatch):

@@ -9,13 +9,21 @@ import pytest
 import xarray as xr
 
 from suchus.apps.cli.calibrate import calibrate
+from suchus.apps.cli.entry import BadCommand
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import save
 from suchus.hardware.emulator import EmulatedBody
-from suchus.hardware.identification import QUANTITIES, bam_parameters, identification_table, identify_servos
+from suchus.hardware.identification import (
+    QUANTITIES,
+    bam_parameters,
+    identification_table,
+    identify_servos,
+    identify_walking,
+)
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import layout, servo_ranges, with_named_servos
 from suchus.robot.gaits import GAITS
+from suchus.robot.motion import intended
 from suchus.robot.motors.identified import identified_servo
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import Backlash
@@ -63,13 +71,17 @@ def waving_log(seed, *, seconds=20.0, amplitude=1.0, plays=(), held=True):
     middle = np.clip(rest, low + 0.3, high - 0.3)
     frequency, phase = random.uniform(0.5, 0.9, (2, len(NAMES))), random.uniform(0, 6.28, (2, len(NAMES)))
     frequency[1] *= 2.3
+    time = body.period * np.arange(round(seconds / body.period))[:, None]
+    swing = 0.25 * np.sin(2 * np.pi * frequency[0] * time + phase[0])
+    swing += 0.08 * np.sin(2 * np.pi * frequency[1] * time + phase[1])
+    goals = np.clip(rest + np.minimum(time, 1.0) * (middle - rest + amplitude * swing), low, high)
+    return driven_log(body, goals), robot
+
+
+def driven_log(body, goals):
+    """Return the log of an emulated robot whose servos get goals, in the steps of their registers."""
     rows = {name: [] for name in ("servo_target", "servo_angle", "servo_velocity", "servo_current")}
-    count = round(seconds / body.period)
-    for tick in range(count):
-        time = tick * body.period
-        swing = 0.25 * np.sin(2 * np.pi * frequency[0] * time + phase[0])
-        swing += 0.08 * np.sin(2 * np.pi * frequency[1] * time + phase[1])
-        goal = step(np.clip(rest + min(time, 1.0) * (middle - rest + amplitude * swing), low, high), TABLE.step)
+    for goal in step(goals, TABLE.step):
         sensed = body.sensed()
         rows["servo_target"].append(goal)
         rows["servo_angle"].append(step(sensed.servo_position[0], TABLE.step))
@@ -79,7 +91,17 @@ def waving_log(seed, *, seconds=20.0, amplitude=1.0, plays=(), held=True):
         body.aim(dict(enumerate(goal.tolist())))
         body.step()
     variables = {name: (("time", "servo"), np.array(values)) for name, values in rows.items()}
-    return xr.Dataset(variables, coords={"time": body.period * np.arange(count), "servo": list(NAMES)}), robot
+    return xr.Dataset(variables, coords={"time": body.period * np.arange(len(goals)), "servo": list(NAMES)})
+
+
+@lru_cache
+def walking_log(gait, seed, *, seconds=20.0, plays=()):
+    """Return the log of a robot with hidden servos that walks on its feet, and the robot."""
+    robot = hidden(seed)
+    faults = [Backlash(name, gap=gap) for name, gap in plays]
+    body = EmulatedBody(robot, GAITS[gait], latency=DELAY, faults=faults, timestep=0.0025)
+    times = body.period * np.arange(round(seconds / body.period))
+    return driven_log(body, intended(ROBOT, GAITS[gait], times).targets), robot
 
 
 def truths(robot, name, plays):
@@ -151,6 +173,83 @@ def test_a_robot_on_the_ground_is_not_taken_for_one_in_the_air():
     log, _ = waving_log(0, held=False)
     with pytest.raises(IncompatibleRecord, match="Hold caiman by its trunk in the air"):
         identify_servos(log, ROBOT)
+
+
+@pytest.mark.parametrize("gait", ["high_walk", "semi_erect"])
+def test_a_quick_walk_shows_the_inertia_and_the_delay_of_the_servos_of_limbs(gait):
+    inertia_errors, delay_errors = [], []
+    for seed in (0, 1):
+        log, robot = walking_log(gait, seed)
+        identified, refusals = identify_walking(log, ROBOT, dict.fromkeys(NAMES, "XM430-W350"))
+        assert len(identified) >= 8
+        assert set(identified) | set(refusals) == set(NAMES)
+        assert all("is never free of the ground" in text for name, text in refusals.items() if name.startswith("spine"))
+        for name, servo in identified.items():
+            inertia_errors.append((servo.armature.value / robot.servo(name).armature - 1.0, servo.armature.half))
+            assert abs(servo.armature.value - robot.servo(name).armature) <= servo.armature.half, name
+            delay_errors.append(abs(servo.delay.value - DELAY) <= servo.delay.half)
+            assert not np.isfinite([servo.torque_constant.value, servo.friction.value, servo.damping.value]).any()
+    assert np.abs(np.array(inertia_errors)[:, 0]).max() < 0.1
+    assert np.mean(delay_errors) >= 0.95
+
+
+def test_the_way_to_the_first_posture_is_no_swing():
+    """A drive begins with servos that go to the first posture, in which feet may be higher than in any swing."""
+    log, _ = walking_log("high_walk", 0)
+    models = dict.fromkeys(NAMES, "XM430-W350")
+    count = 300
+    way = log.isel(time=slice(0, count)).assign_coords(time=log.time.values[:count] - count * 0.01)
+    fraction = np.linspace(0.0, 1.0, count)[:, None]
+    way = way.assign(servo_angle=way.servo_angle.copy(data=fraction * way.servo_angle.values[:1]))
+    identified, _ = identify_walking(xr.concat([way, log], "time"), ROBOT, models)
+    alone, _ = identify_walking(log, ROBOT, models)
+    assert {name: servo.armature for name, servo in identified.items()} == {
+        name: servo.armature for name, servo in alone.items()
+    }
+
+
+def test_inertia_from_a_walk_is_as_great_as_the_torque_constant_is_said():
+    """The current alone shows the inertia over the torque constant: a model of another constant scales it."""
+    log, robot = walking_log("high_walk", 0)
+    log = log.assign(servo_current=0.5 * log.servo_current)
+    models = dict.fromkeys(NAMES, "XM430-W350")
+    halved, _ = identify_walking(log, ROBOT, models)
+    for name, servo in halved.items():
+        assert servo.armature.value == pytest.approx(0.5 * robot.servo(name).armature, rel=0.15)
+
+
+def test_a_walk_that_is_too_slow_or_too_short_is_refused_with_the_motion_that_would_do():
+    models = dict.fromkeys(NAMES, "XM430-W350")
+    log, _ = walking_log("low_crawl", 0)
+    with pytest.raises(IncompatibleRecord, match=r"identifies no servo.* swing within half a second, as high_walk"):
+        identify_walking(log, ROBOT, models)
+    quick, _ = walking_log("high_walk", 0)
+    with pytest.raises(IncompatibleRecord, match=r"lasts 2.99 s; 8 s"):
+        identify_walking(quick.isel(time=slice(400)), ROBOT, models)
+
+
+def test_servos_that_never_move_are_left_out():
+    log, _ = waving_log(0)
+    still = log.copy(deep=True)
+    for name in ("servo_target", "servo_angle", "servo_velocity"):
+        still[name][:, 0] = 0.1 if name != "servo_velocity" else 0.0
+    _, refusals = identify_servos(still, ROBOT)
+    assert refusals[NAMES[0]] == "it turned faster than 0.05 rad/s for 0 s only"
+
+
+def test_the_command_says_what_a_walk_does_not_show(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    save(walking_log("high_walk", 0)[0], "record.nc")
+    assert calibrate(["log", "record.nc", "--walked"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "torque constant and friction show in the air" in said
+    assert "spine_yaw_1 is left out: it turns no joint of a limb" in said
+    rows = (tmp_path / "servos_identified.csv").read_text().splitlines()
+    assert rows[1].startswith("LF_pitch,nan,inf,0.0")
+    with pytest.raises(BadCommand, match="--held and --walked contradict each other"):
+        calibrate(["log", "record.nc", "--walked", "--held"])
+    with pytest.raises(BadCommand, match="--json needs what only a robot in the air shows"):
+        calibrate(["log", "record.nc", "--walked", "--json", "bam"])
 
 
 def test_the_load_of_a_held_limb_is_its_weight_over_its_lever():

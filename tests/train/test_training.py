@@ -35,6 +35,7 @@ def few_networks():
     """Let a generation have four networks, the fewest of which CMA-ES learns, and compare them in two episodes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(network_search, "POPULATION", 4)
+        patch.setattr(network_search, "LOOP_EPISODES", 2)
         patch.setattr(training_module.conduct, "_CHECK_EPISODES", 2)
         yield
 

@@ -1,4 +1,4 @@
-"""The swim on three grids: `make validate`. Its table stands in docs/water.md.
+"""The swim on three grids: `make validate`. Its table stands in docs/water_evidence.md.
 
 Asked are speeds within 2 %, a swim that is steady to 1 % and a force noise below 1 %: what is missed is expected to be,
 and the numbers are those that the page states.

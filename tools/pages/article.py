@@ -60,6 +60,31 @@ FIGURES = {
     23: "crawling and standing, from the side",
     24: "height reached while it stands up",
 }
+NAMED = (
+    (
+        "III.D",
+        "jumping",
+        "Named once, as a movement in which a robot observes its own parts, without a gait, a number or a picture.",
+    ),
+    (
+        "I",
+        "underwater rolling",
+        "Named as a movement of crocodiles. [`death_roll`](questions.md#death_roll) rolls the robot's body, without "
+        "ground and gravity.",
+    ),
+    (
+        "IV.B",
+        "movement of the body in water",
+        "Judged by its two parts, the swing of the tail and that of the spine: [`swimming`](questions.md#swimming).",
+    ),
+    (
+        "III.D",
+        "frames of a film, by ScreenToGif",
+        "The film is not public. `suchus capture FILM --digitise PAGE.html` makes a page on which the points of any "
+        "film are clicked; [capture](capture.md) reads them.",
+    ),
+)
+"""What the article names without a statement that can be judged: where, what, and what is done about it."""
 TABLES = {"I": "D-H table of the hind leg", "II": "D-H table of the trunk"}
 
 
@@ -108,7 +133,7 @@ def paper_map() -> str:
         for key, claim in CLAIMS.items()
         if not claim.of
     ]
-    return page("paper_map", parts=parts, statements=statements)
+    return page("paper_map", parts=parts, statements=statements, named=NAMED)
 
 
 def misprints_of() -> dict[str, list[str]]:

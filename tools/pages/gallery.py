@@ -17,6 +17,7 @@ _SHARED = {
     "16_falling_ellipse": ("flow_falling.png",),
     "18_flutter": ("flow_flutter.png",),
     "21_patch_of_fine_cells": ("flow_patch.png",),
+    "26_coin_on_a_floor": ("flow_coin.png",),
     "09_replay": ("replay.png",),
     "10_optimise": ("optimised_crawl.png",),
 }

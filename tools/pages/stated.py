@@ -30,7 +30,8 @@ from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
 from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
-from suchus.experiments.claims import RULES, UNRULED
+from suchus.experiments.catalog.policies.figure import condition_label
+from suchus.experiments.claims import RULES, UNRULED, claims_of, known_claims
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -60,6 +61,25 @@ def asked(experiment: str, measures: Mapping[str, float]) -> list[dict[str, Any]
     return found
 
 
+def judged(experiment: str, measures: Mapping[str, float]) -> list[dict[str, str]]:
+    """Return the claims that an experiment states itself: the statement, the word, the interval and the reason."""
+    claims, verdicts = claims_of(experiment), []
+    for rule in EXPERIMENTS[experiment].rules():
+        if rule.claim in claims:
+            verdict = judge(rule, measures, claims=claims)
+            ends = [f"{measures[f'{rule.measure}{end}']:+.2f}" for end in ("_low", "_high")]
+            unit = "" if claims[rule.claim].unit == "-" else f" {claims[rule.claim].unit}"
+            verdicts.append(
+                {
+                    "sense": claims[rule.claim].sense,
+                    "word": verdict.verdict,
+                    "interval": f"{ends[0]} to {ends[1]}{unit}",
+                    "why": verdict.why,
+                }
+            )
+    return verdicts
+
+
 def numbers(measures: Mapping[str, float], start: str, end: str = "") -> list[float]:
     """Return the numbers that names of measures hold between start and end, ``0_03`` for 0.03, in order."""
     between = (name.removeprefix(start).removesuffix(end) for name in measures if name[: len(start)] == start)
@@ -82,8 +102,10 @@ def templates() -> Environment:
     environment = experiment.templates(WORDS)
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
-                            "numbers": numbers,
-                            "greatest": greatest, "naturally": naturally}  # fmt: skip
+                            "judged": judged,
+                            "numbers": numbers, "known_claims": known_claims,
+                            "greatest": greatest, "naturally": naturally,
+                            "condition_label": condition_label}  # fmt: skip
     return environment
 
 
@@ -154,10 +176,15 @@ def _filled(block: str, width: int) -> str:
     )  # fmt: skip
 
 
+def _of_today(rows: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fractions of designs that today's rules judged; what another rule judged says nothing."""
+    return {claim: row for claim, row in rows.items() if claim in RULES and row.rule == RULES[claim].asked}
+
+
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
-             "unruled": UNRULED, "rules": RULES}  # fmt: skip
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "unruled": UNRULED, "rules": RULES}
+    known |= {"shares": _of_today(SHARES), "too_few": _of_today(SPARSE_SHARES)}
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 

@@ -18,7 +18,6 @@ _SAID = {
     "pyproject.toml": r'^version = "([^"]+)"',
     "CHANGELOG.md": r"^## (\d\S*) \(\d{4}-\d\d-\d\d\)$",  # the latest stands first
     "CITATION.cff": r"^version: (\S+)$",
-    "recipe/recipe.yaml": r'^  version: "?([^"\s]+)',
 }
 _BESIDE = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md")
 

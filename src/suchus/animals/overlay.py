@@ -1,25 +1,20 @@
 """Skeleton and foot contacts, drawn on the frames of the film that the keypoints are from."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from PIL import Image, ImageSequence, UnidentifiedImageError
 
 from suchus.animals.capture import Tracks, UnusableTracks
-from suchus.core.errors import UnreadableFile
-from suchus.core.reading import check_file
+from suchus.animals.pictures import frames
 from suchus.visual.figures.film import film
 from suchus.visual.figures.style import COLOURS
 
-_PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp")
-_MOVING = (".gif", ".webp", ".tif", ".tiff", ".png")
 _MAX_FRAMES = 120  # frames that are drawn
 _FILM_WIDTH = 720  # [px]; of the film that is drawn
-_INSTALL = 'pip install "suchus[capture]"'
 
 
 def overlay(tracks: Tracks, strides: xr.Dataset, faulty_keypoints: Sequence[str], video: Path) -> bytes:
@@ -45,14 +40,15 @@ def overlay(tracks: Tracks, strides: xr.Dataset, faulty_keypoints: Sequence[str]
         )
     count, source_pictures = len(tracks.time), []
     step = -(-count // _MAX_FRAMES)
-    frames = 0
-    for i, picture in enumerate(_frames(video)):
-        frames = i + 1
+    frame_count = 0
+    for i, frame in enumerate(frames(video)):
+        frame_count = i + 1
         if i < count and i % step == 0:
-            source_pictures.append(picture.convert("RGB"))
-    if frames != count:
+            source_pictures.append(frame.picture.convert("RGB"))
+    if frame_count != count:
         raise UnusableTracks(
-            f"{video} has {frames} frames and {tracks.source} {count}; they must be of the same film, frame by frame."
+            f"{video} has {frame_count} frames and {tracks.source} {count}; they must be of the same film, frame by "
+            "frame."
         )
     scale = min(1.0, _FILM_WIDTH / source_pictures[0].width)
     size = (round(scale * source_pictures[0].width), round(scale * source_pictures[0].height))
@@ -141,42 +137,3 @@ def _stands(time: np.ndarray, legs: Sequence[str], strides: xr.Dataset) -> dict[
             for start, end in zip(lift_off, touch_down, strict=True):
                 stances[leg][(time >= start) & (time < end)] = 0.0
     return stances
-
-
-def _frames(video: Path) -> Iterator[Image.Image]:
-    """Yield the frames of a video."""
-    if video.is_dir():
-        files = sorted(file for file in video.iterdir() if file.suffix.lower() in _PICTURES)
-        if not files:
-            raise UnreadableFile(f"{video} holds no pictures ({', '.join(_PICTURES)}).")
-        for file in files:
-            yield _opened(file)
-        return
-    check_file(video)
-    if video.suffix.lower() in _MOVING:
-        for frame in ImageSequence.Iterator(_opened(video)):
-            yield frame.copy()
-        return
-    try:
-        import av  # noqa: PLC0415  an optional extra
-    except ImportError as error:
-        raise UnreadableFile(
-            f"{video.name} is a video, which the av library reads; install it: {_INSTALL}; or give a folder of "
-            "pictures."
-        ) from error
-    try:
-        with av.open(str(video)) as container:
-            for frame in container.decode(video=0):
-                yield frame.to_image()
-    except (OSError, ValueError, IndexError) as error:
-        raise UnreadableFile(
-            f"{video} cannot be read as a video: it is missing, damaged, or of a format that the av library does not "
-            "know; convert it, or give a folder of pictures."
-        ) from error
-
-
-def _opened(file: Path) -> Image.Image:
-    try:
-        return Image.open(file)
-    except (UnidentifiedImageError, OSError) as error:
-        raise UnreadableFile(f"{file} cannot be read as a picture.") from error

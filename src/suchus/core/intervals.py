@@ -1,4 +1,7 @@
-"""Confidence intervals that hold for few repeats: of a fraction and of a median, without assumptions about a shape."""
+"""Confidence intervals that hold for few repeats: of a fraction and of a median, without assumptions about a shape.
+
+They hold for sequential sampling too, which ends once the answer is known: see ``planned_looks``.
+"""
 
 from typing import Any, Literal
 
@@ -7,6 +10,29 @@ from scipy.special import bdtr, betaincinv, ndtri
 
 CONFIDENCE = 0.95
 """Least probability with which an interval contains the true value [-]."""
+
+
+def planned_looks(count: int) -> tuple[int, ...]:
+    """Return the numbers of repeats after which sequential sampling may end: half of them, and all.
+
+    After each look the intervals of ``look_confidence`` say whether the answer is known. One repeat has one look.
+
+    Args:
+        count: greatest number of repeats, at least 1 [-].
+    """
+    return (count,) if count < 2 else (count - count // 2, count)
+
+
+def look_confidence(looks: int) -> float:
+    """Return the confidence of the intervals after each of several planned looks [-].
+
+    The intervals of all looks together contain the true value with a probability of at least ``CONFIDENCE``, so that
+    the rule by which sampling ends does not matter: the errors of the looks add up to 5 % at most (Bonferroni).
+
+    Args:
+        looks: number of looks that were planned, whether or not sampling ended before the last [-].
+    """
+    return 1.0 - (1.0 - CONFIDENCE) / looks
 
 
 def fraction_interval(

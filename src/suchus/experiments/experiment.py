@@ -17,9 +17,9 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 from jinja2.ext import Extension
 
-from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed
+from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed, word_of
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
-from suchus.core.intervals import fraction_interval, median_interval
+from suchus.core.intervals import CONFIDENCE, fraction_interval, median_interval
 from suchus.core.progress import Progress, silent, staged
 from suchus.experiments.claims import check_claims, known_claims, rules_of
 from suchus.robot.design import Robot, check_needs
@@ -83,7 +83,7 @@ class Measures(dict[str, Measure]):
         self |= Measures(*parts, measures)
 
 
-def estimated(name: str, repeats: Any, unit: str) -> Measures:
+def estimated(name: str, repeats: Any, unit: str, *, confidence: float = CONFIDENCE) -> Measures:
     """Return the median of an ensemble as ``NAME``, and its 95 % interval as ``NAME_low`` and ``NAME_high``.
 
     The interval is that of order statistics, see ``median_interval``: it is the uncertainty of the median, holds for
@@ -94,13 +94,14 @@ def estimated(name: str, repeats: Any, unit: str) -> Measures:
         name: name of the measure.
         repeats: number of every repeat; if one is not finite, measure and interval are NaN.
         unit: unit of the numbers.
+        confidence: least probability of coverage; that of ``look_confidence`` for sequential sampling [-].
     """
     values = np.asarray(repeats, float).ravel()
-    lower_bound, upper_bound = median_interval(values)
+    lower_bound, upper_bound = median_interval(values, confidence=confidence)
     return _measure_with_interval(name, float(np.median(values)), lower_bound, upper_bound, unit)
 
 
-def estimated_fraction(name: str, outcomes: Any) -> Measures:
+def estimated_fraction(name: str, outcomes: Any, *, confidence: float = CONFIDENCE) -> Measures:
     """Return the fraction of repeats in which an event occurred as ``NAME``, and its exact 95 % interval.
 
     The ends are ``NAME_low`` and ``NAME_high``, after Clopper and Pearson, see ``fraction_interval``.
@@ -108,11 +109,12 @@ def estimated_fraction(name: str, outcomes: Any) -> Measures:
     Args:
         name: of the measure.
         outcomes: whether the event occurred, of every repeat; if one is NaN, measure and interval are NaN.
+        confidence: least probability of coverage; that of ``look_confidence`` for sequential sampling [-].
     """
     values = np.asarray(outcomes, float).ravel()
     if not np.isfinite(values).all():
         return _measure_with_interval(name, nan, nan, nan, "-")
-    lower_bound, upper_bound = fraction_interval(int(values.sum()), values.size)
+    lower_bound, upper_bound = fraction_interval(int(values.sum()), values.size, confidence=confidence)
     return _measure_with_interval(name, float(values.mean()), lower_bound, upper_bound, "-")
 
 
@@ -296,6 +298,21 @@ class Experiment(ABC):
     def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
         unable, claims = self.unable(record), known_claims(self.name())
         return tuple(judge(rule, numbers, unable=unable, claims=claims) for rule in self.rules())
+
+    @classmethod
+    def has_word(cls, claim: str, measures: Mapping[str, Measure]) -> bool:
+        """Return whether measures give a claim of the article another word than ``undecided``, in each of its readings.
+
+        Sequential sampling ends then, see ``suchus.core.intervals.planned_looks``.
+
+        Args:
+            claim: key of a claim that this experiment judges.
+            measures: at least those that its rule reads.
+        """
+        numbers = {name: measure.value for name, measure in measures.items()}
+        rules = [rule for rule in cls.rules() if rule.claim == claim]
+        readings = [reading for rule in rules for reading in (rule, *rule.interpreted_rules)]
+        return all(word_of(reading, numbers) != "undecided" for reading in readings)
 
     def unable(self, record: xr.Dataset) -> Mapping[str, str]:
         """Return the reasons why models could not run, by the names of rungs; none by default."""

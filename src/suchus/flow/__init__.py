@@ -8,6 +8,7 @@ Start reading with ``flow.setup``, then ``flow.simulation``.
 
 from suchus.core.isosurface import IsoSurface, isosurface
 from suchus.flow.added import added_mass
+from suchus.flow.batch import batch
 from suchus.flow.bent import BentMesh, BentOutline, bend_shape
 from suchus.flow.body import Body
 from suchus.flow.contact import BodyContact
@@ -108,6 +109,7 @@ __all__ = [
     "Twists",
     "Wall",
     "added_mass",
+    "batch",
     "bend_shape",
     "difference",
     "eel",

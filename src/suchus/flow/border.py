@@ -29,11 +29,12 @@ MIN_SIDE_RELAXATION = 0.5
 _CHANGING = {"prescribed": "prescribed", "induced": "induced", "seen": "previous_induced"}
 """Arrays of an edge that change, by their key in a checkpoint."""
 
-_MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT = range(4)
-"""Conditions for the velocity along a side beyond it: mirrored about a value, that value, no vorticity, no gradient."""
+_MIRRORED, _PRESCRIBED, _FREE_OF_VORTICITY, _ZERO_GRADIENT, _REPEATED = range(5)
+"""Conditions for the velocity along a side beyond it: mirrored about a value, that value, no vorticity, no gradient,
+and the values at the other end of a periodic axis, which the velocity across the side has too."""
 
 
-@compiled
+@kernel_part
 def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):  # type: ignore[no-untyped-def]
     """Write the velocity on a side and in the two lines of cells beyond it.
 
@@ -65,6 +66,55 @@ def _fill_side(n, t, face, inner, step, prescribed, straight, condition, value):
                 t[ghost, i] = t[source, i] - sign * (n[face, i] - n[face, i - 1])
             else:
                 t[ghost, i] = t[source, i]
+
+
+@kernel_part
+def _repeat_lines(n, t, face, step, cells):  # type: ignore[no-untyped-def]
+    """Write the lines beyond a periodic side, which are those at the other end of the axis.
+
+    Args:
+        n: velocity along the normal, normal index first.
+        t: velocity along the side, normal index first.
+        face: line of the side's faces.
+        step: 1 at the low end of the axis and -1 at the high end.
+        cells: cells along the normal.
+    """
+    for k in range(1, PAD + 1):
+        ghost = face - k if step > 0 else face + k - 1
+        source = ghost + step * cells
+        for i in range(n.shape[1]):
+            n[ghost, i] = n[source, i]
+            t[ghost, i] = t[source, i]
+
+
+@compiled
+def _fill_plane(velocity, sides, values, prescribed):  # type: ignore[no-untyped-def]
+    """Write the velocity on all sides of a plane domain and in the two lines of cells beyond each.
+
+    Args:
+        velocity: velocity on the faces before the cells, padded, shape (2, y, x) [m/s].
+        sides: rows of ``Border.side_table``, shape (side, 8).
+        values: velocity along each side that its condition takes, shape (side,) [m/s].
+        prescribed: velocity into the domain on the faces of all sides, end to end [m/s].
+    """
+    for k in range(sides.shape[0]):
+        axis, face, inner, step, cells, start, straight, condition = (
+            sides[k, 0], sides[k, 1], sides[k, 2], sides[k, 3], sides[k, 4], sides[k, 5], sides[k, 6] > 0, sides[k, 7]
+        )  # fmt: skip
+        stop = start + velocity.shape[1 + axis] - 2 * PAD
+        if condition == _REPEATED:
+            if axis == 0:
+                _repeat_lines(velocity[0].T, velocity[1].T, face, step, cells)
+            else:
+                _repeat_lines(velocity[1], velocity[0], face, step, cells)
+        elif axis == 0:
+            _fill_side(
+                velocity[0].T, velocity[1].T, face, inner, step, prescribed[start:stop], straight, condition, values[k]
+            )
+        else:
+            _fill_side(
+                velocity[1], velocity[0], face, inner, step, prescribed[start:stop], straight, condition, values[k]
+            )
 
 
 @kernel_part
@@ -275,18 +325,40 @@ class Edge:
         slides, inflow = self.side_velocities(time)
         return max(0.0 if slides is None else length(slides), 0.0 if inflow is None else float(np.abs(inflow).max()))
 
-    def fill(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
-        """Write this side's values to the cells and faces around the domain.
+    @property
+    def inner(self) -> int:
+        """Index of the cells inside the side along the normal."""
+        return PAD if self.is_lower_side else PAD + self.cells - 1
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether the velocity along the normal continues linearly beyond the side; else it stays the same."""
+        return not self.side.is_permeable or (self.unbounded and not self.convective_weight)
+
+    def table_row(self, start: int, stream: tuple[float, ...]) -> tuple[tuple[int, ...], float]:
+        """Return the row of ``Border.side_table`` of a side in the plane, and the value of its condition [m/s].
 
         Args:
-            velocity: velocity on the faces before the cells, padded, shape (axis, ...) [m/s].
+            start: index of its first face among those of all sides.
             stream: velocity of the far water [m/s].
         """
-        n, f, step = self.normal(velocity), self.face, self.sign
-        inner = PAD if self.is_lower_side else PAD + self.cells - 1
-        tangential_axes = (1 - self.axis,) if len(velocity) == 2 else [d for d in range(3) if d != self.axis]
+        condition, value = _REPEATED, 0.0
+        if not isinstance(self.side, Periodic):
+            condition, value = self._tangential_condition(0, 1 - self.axis, self.sign, stream)
+        row = self.axis, self.face, self.inner, self.sign, self.cells, start, int(self.is_straight), condition
+        return row, value
+
+    def fill_in_space(self, velocity: np.ndarray, stream: tuple[float, ...]) -> None:
+        """Write this side's values to the cells and faces around a domain in space.
+
+        Args:
+            velocity: velocity on the faces before the cells, padded, shape (3, z, y, x) [m/s].
+            stream: velocity of the far water [m/s].
+        """
+        f, step = self.face, self.sign
+        tangential_axes = [d for d in range(3) if d != self.axis]
         if isinstance(self.side, Periodic):
-            lines = [n, *(self.with_normal_first(velocity[d]) for d in tangential_axes)]
+            lines = [self.with_normal_first(velocity[d]) for d in (self.axis, *tangential_axes)]
             for k in range(1, PAD + 1):
                 ghost, source = (
                     (f - k, f - k + self.cells) if self.is_lower_side else (f + k - 1, f + k - 1 - self.cells)
@@ -294,20 +366,17 @@ class Edge:
                 for a in lines:
                     a[ghost] = a[source]
             return
-        straight = not self.side.is_permeable or (self.unbounded and not self.convective_weight)
         condition, value = self._tangential_condition(0, tangential_axes[0], step, stream)
-        if len(tangential_axes) == 1:
-            tangential = self.with_normal_first(velocity[tangential_axes[0]])
-            _fill_side(n, tangential, f, inner, step, self.prescribed, straight, condition, n.dtype.type(value))
-        else:
-            values = tuple(
-                n.dtype.type(tangential_value)
-                for tangential_value in (value, self._tangential_condition(1, tangential_axes[1], step, stream)[1])
-            )
-            line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
-            strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
-            flat = velocity.reshape(3, -1)
-            _fill_planes(flat, self.axis, strides, f, inner, step, self.prescribed, straight, condition, values)
+        values = tuple(
+            velocity.dtype.type(tangential_value)
+            for tangential_value in (value, self._tangential_condition(1, tangential_axes[1], step, stream)[1])
+        )
+        line, plane = velocity.shape[3], velocity.shape[2] * velocity.shape[3]
+        strides = ((1, plane, line), (line, plane, 1), (plane, line, 1))[self.axis]
+        flat = velocity.reshape(3, -1)
+        _fill_planes(
+            flat, self.axis, strides, f, self.inner, step, self.prescribed, self.is_straight, condition, values
+        )
 
     def _tangential_condition(self, k: int, axis: int, step: int, stream: tuple[float, ...]) -> tuple[int, float]:
         """Return the condition for the velocity along the side, and its value [m/s]; the condition holds for all axes.
@@ -341,6 +410,30 @@ class Border:
     """Steps prepared so far [-]."""
     last_step: float = 0.0
     """Length of the last step [cells per (m/s)]."""
+    prescribed: np.ndarray = field(init=False)
+    """Velocity into the domain on the faces of all sides, end to end, of which each side has a view [m/s]."""
+    induced: np.ndarray = field(init=False)
+    """``Edge.induced`` of all sides, in the same way [m/s]."""
+    previous_induced: np.ndarray = field(init=False)
+    """``Edge.previous_induced`` of all sides, in the same way [m/s]."""
+    side_table: tuple[tuple[float, ...], np.ndarray, np.ndarray] | None = field(init=False, default=None)
+    """The stream and what ``_fill_plane`` needs of each side: axis, face, inner cells, step, cells, index of its first
+    face, whether the normal velocity continues linearly, and the condition, shape (side, 8); and the conditions'
+    values, shape (side,) [m/s]. None before they are known."""
+
+    def __post_init__(self) -> None:
+        """Lay the faces of all sides end to end."""
+        dtype = self.edges[0].prescribed.dtype if self.edges else np.dtype(np.float64)
+        size = sum(edge.prescribed.size for edge in self.edges)
+        self.prescribed, self.induced, self.previous_induced = np.zeros(size, dtype), np.zeros(size), np.zeros(size)
+        start = 0
+        for edge in self.edges:
+            shape, stop = edge.prescribed.shape, start + edge.prescribed.size
+            self.prescribed[start:stop] = edge.prescribed.ravel()
+            edge.prescribed, edge.induced, edge.previous_induced = (
+                faces[start:stop].reshape(shape) for faces in (self.prescribed, self.induced, self.previous_induced)
+            )
+            start = stop
 
     @classmethod
     def for_grid(cls, sides: Sides, grid: Grid, dtype: type) -> "Border":
@@ -373,7 +466,7 @@ class Border:
         for k, edge in enumerate(self.edges):
             for key, name in _CHANGING.items():
                 getattr(edge, name)[:] = state[f"edge{k}.{key}"]
-        self.stream = tuple(state["stream"].tolist())
+        self.stream, self.side_table = tuple(state["stream"].tolist()), None
         self.steps, self.last_step = int(state["prepared"][0]), float(state["prepared"][1])
 
     def wall_velocity(self, axis: int, *, is_low: bool) -> tuple[float, ...] | None:
@@ -409,29 +502,31 @@ class Border:
         Raises:
             InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
         """
-        previous_stream, self.stream = self.stream, stream
+        previous_stream, self.stream, self.side_table = self.stream, stream, None
         size = max(length(stream), 1e-30)
         for edge in self.edges:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
-            for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
-                edge.induced[:] = edge.previous_induced[:] = induced
-        growth = dt / self.last_step if self.last_step else 0.0
+            self.induced[:] = self.previous_induced[:] = self._induced(velocity, window)
+        growth, start = dt / self.last_step if self.last_step else 0.0, 0
+        extrapolation = growth * (self.induced - self.previous_induced)
         for edge in self.edges:
-            extrapolation = growth * (edge.induced - edge.previous_induced)
+            stop = start + edge.prescribed.size
             if edge.side.is_open:
-                inflow = edge.sign * stream[edge.axis] + edge.induced + extrapolation
+                change = extrapolation[start:stop].reshape(edge.prescribed.shape)
+                inflow = edge.sign * stream[edge.axis] + edge.induced + change
                 if edge.convective_weight:
                     rise = (
                         edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
                         if isinstance(edge.side, Stream)
                         else 0.0
                     )
-                    outflow = self._convective_outflow(edge, velocity, dt) + (rise + extrapolation)
+                    outflow = self._convective_outflow(edge, velocity, dt) + (rise + change)
                     inflow = edge.convective_weight * outflow + (1 - edge.convective_weight) * inflow
                 edge.prescribed[:] = inflow
-            edge.previous_induced[:] = edge.induced
-            edge.induced += extrapolation
+            start = stop
+        self.previous_induced[:] = self.induced
+        self.induced += extrapolation
         self.steps, self.last_step = self.steps + 1, dt
         self._balance()
         self._refuse_gain(time)
@@ -461,18 +556,15 @@ class Border:
             velocity: velocity on the faces before the cells, padded, shape (axis, ...) [m/s].
             window: padded cell indices around the bodies.
         """
-        change, relaxation = 0.0, self._relaxation(window)
         if self.water is None:
-            return change
-        for edge, induced in zip(self.edges, self._induced(velocity, window), strict=True):
-            rise = relaxation * (induced - edge.induced)
-            edge.prescribed += rise.astype(edge.prescribed.dtype)
-            edge.induced += rise
-            if self.steps == 1:
-                edge.previous_induced[:] = edge.induced
-            change = max(change, float(np.abs(rise).max()))
+            return 0.0
+        rise = self._relaxation(window) * (self._induced(velocity, window) - self.induced)
+        self.prescribed += rise.astype(self.prescribed.dtype)
+        self.induced += rise
+        if self.steps == 1:
+            self.previous_induced[:] = self.induced
         self._balance()
-        return change
+        return float(np.abs(rise).max())
 
     def _relaxation(self, window: Window) -> float:
         """Return the fraction of a correction of the induced velocities that is made at once [-].
@@ -494,14 +586,19 @@ class Border:
                 ratio = min(ratio, max(start if edge.is_lower_side else edge.cells - stop, 0) / lateral)
         return MIN_SIDE_RELAXATION + (1 - MIN_SIDE_RELAXATION) * ratio / NEAR_SIDE_RATIO
 
-    def _induced(self, velocity: np.ndarray, window: Window) -> list[np.ndarray]:
+    def _induced(self, velocity: np.ndarray, window: Window) -> np.ndarray:
+        """Return the velocity into the domain that the flow induces on the faces of all sides, end to end [m/s].
+
+        Args:
+            velocity: velocity on the faces before the cells, padded, shape (axis, ...) [m/s].
+            window: padded cell indices around the bodies.
+        """
         if self.water is None:
-            return [np.zeros(e.prescribed.shape) for e in self.edges]
-        return self.water.inward(
-            velocity,
-            window,
-            [Fading(e.axis, e.is_lower_side, e.convective_weight) for e in self.edges if e.convective_weight],
-        )
+            return np.zeros(self.induced.size)
+        fadings = [Fading(e.axis, e.is_lower_side, e.convective_weight) for e in self.edges if e.convective_weight]
+        if isinstance(self.water, OpenWater):
+            return self.water.inward_faces(velocity, window, fadings)
+        return np.concatenate([side.ravel() for side in self.water.inward(velocity, window, fadings)])
 
     @staticmethod
     def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
@@ -528,7 +625,7 @@ class Border:
         free = any(e.convective_weight for e in self.edges)
         for edge in self.edges:
             if not isinstance(edge.side, Periodic):
-                net += float(edge.prescribed.sum(dtype=np.float64))
+                net += float(np.add.reduce(edge.prescribed, axis=None, dtype=np.float64))
                 open_area += edge.prescribed.size * (edge.convective_weight if free else float(edge.unbounded))
         if open_area:
             for edge in self.edges:
@@ -538,5 +635,16 @@ class Border:
 
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
-        for edge in self.edges:
-            edge.fill(velocity, self.stream)
+        if len(velocity) == 3:
+            for edge in self.edges:
+                edge.fill_in_space(velocity, self.stream)
+            return
+        if not self.edges:
+            return
+        if self.side_table is None or self.side_table[0] is not self.stream:
+            starts = np.cumsum([0, *(edge.prescribed.size for edge in self.edges)]).tolist()
+            rows = [edge.table_row(start, self.stream) for edge, start in zip(self.edges, starts, strict=False)]
+            table = np.array([row for row, _ in rows], np.int64).reshape(-1, 8)
+            self.side_table = self.stream, table, np.array([value for _, value in rows], velocity.dtype)
+        _, table, values = self.side_table
+        _fill_plane(velocity, table, values, self.prescribed)

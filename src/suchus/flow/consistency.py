@@ -76,6 +76,10 @@ def _wrap_angle(angle: np.ndarray) -> np.ndarray:
     return wrapped_angle
 
 
+_PLANE_KINDS = np.array([0, 0, 1])
+"""Kinds of the coordinates of a pose in the plane: position and angle [-]."""
+
+
 class MotionSource(NamedTuple):
     """The poses of a body."""
 
@@ -90,6 +94,11 @@ class MotionSource(NamedTuple):
         """Return positions and angles, in space rotation vectors from the first pose, and their rates."""
         poses = [self.motion(time) for time in times]
         ndim = len(poses[0].position)
+        if ndim == 2:
+            rows = np.array([(*p.position, p.angle, *p.velocity, p.spin) for p in poses])
+            shifts = rows[:, :3] - rows[0, :3]
+            shifts[:, 2] = _wrap_angle(shifts[:, 2])
+            return CoordinateSeries(shifts, rows[:, 3:], np.array([1.0, 1.0, self.bounding_radius]), _PLANE_KINDS)
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
         rates = np.array([[*p.velocity, *([p.spin] if ndim == 2 else p.spins)] for p in poses])
         turns = (np.arange(places.shape[1]) >= ndim).astype(int)
@@ -132,16 +141,19 @@ class MidlineSource(NamedTuple):
         Raises:
             InvalidDesign: the number of stations changes.
         """
-        reference, *later_states = (
-            np.concatenate([state.rows, [state.half_width_rates]]) for state in map(self.spine, times)
-        )
-        for time, later_state in zip(times[1:], later_states, strict=True):
-            if later_state.shape != reference.shape:
+        states = [self.spine(time) for time in times]
+        count = states[0].x.size
+        samples = np.empty((len(times), 8, count))  # x, y, heading, half-width, and their rates
+        for time, state, sample in zip(times, states, samples, strict=True):
+            if state.x.size != count:
                 raise InvalidDesign(
-                    f"the midline of {self.name} has {reference.shape[1]} stations at t = {times[0]:.4g} s and "
-                    f"{later_state.shape[1]} at t = {time:.4g} s; give as many at every time."
+                    f"the midline of {self.name} has {count} stations at t = {times[0]:.4g} s and "
+                    f"{state.x.size} at t = {time:.4g} s; give as many at every time."
                 )
-        samples = np.array([reference, *later_states])  # x, y, heading, half-width, and their rates
+            sample[0], sample[1], sample[2], sample[3] = state.x, state.y, state.heading, state.half_width
+            sample[4], sample[5], sample[6] = state.x_rate, state.y_rate, state.heading_rate
+            sample[7] = 0.0 if state.half_width_rate is None else state.half_width_rate
+        reference = samples[0]
         places, rates = samples[:, :4] - reference[:4], samples[:, 4:]
         places[:, 2] = _wrap_angle(places[:, 2])
         arms = np.ones(places.shape[1:])
@@ -339,9 +351,7 @@ class Consistency:
 
 
 def _turn(start: Pose, end: Pose) -> np.ndarray:
-    """Return the angle from one pose to another, in space their rotation vector [rad]."""
-    if len(start.position) == 2:
-        return _wrap_angle(np.array([end.angle - start.angle]))
+    """Return the rotation vector from one pose in space to another [rad]."""
     if start.pitch == end.pitch == 0 and start.roll == end.roll == 0:
         return _wrap_angle(np.array([0.0, 0.0, end.angle - start.angle]))
     start_quaternion, end_quaternion = (rotation.from_angles(p.angle, p.pitch, p.roll) for p in (start, end))

@@ -200,8 +200,17 @@ class OpenWater:
     """Cells along x and y."""
     points: np.ndarray = field(init=False)
     """Points of the sides where the velocity is summed up, side after side, shape (2, point) [cells]."""
-    interpolation: list[tuple[np.ndarray, np.ndarray]] = field(init=False)
-    """Which points of a side each face takes, and their weights, per side, each of shape (4, face) [-]."""
+    face_points: tuple[np.ndarray, np.ndarray] = field(init=False)
+    """Which points the faces of all sides, end to end, take, as indices in the flattened velocities of the points, and
+    their weights, each of shape (4, face) [-]."""
+    signs: np.ndarray = field(init=False)
+    """1 on the faces of a side at a low end, -1 at a high end, end to end, shape (face,) [-]."""
+    ends: list[int] = field(init=False)
+    """Index of the first face behind each side but the last [-]."""
+    fading_weights: dict[tuple[int, bool], tuple[tuple[float, ...], np.ndarray, np.ndarray]] = field(
+        init=False, default_factory=dict
+    )
+    """For each side that carries a wake out, what its fading depends on, and the result of ``_weights`` for it."""
     middles: tuple[np.ndarray, np.ndarray] = field(init=False)
     """Middles of the blocks (x, y), each of shape (row, column) [cells]."""
     blocks: np.ndarray = field(init=False)
@@ -214,14 +223,26 @@ class OpenWater:
         self.blocks = np.zeros((4, rows, columns))
         x, y = np.meshgrid(*(SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows)))
         self.middles = x, y
-        points, self.interpolation = [], []
+        points, interpolation = [], []
         for axis, coordinate in ((0, 0), (0, nx), (1, 0), (1, ny)):
             cell_count = self.cells[1 - axis]
             knots = np.linspace(0.5, cell_count - 0.5, max(-(-cell_count // SIDE), 3) + 1)
-            self.interpolation.append(cubic(knots, np.arange(cell_count) + 0.5))
+            interpolation.append(cubic(knots, np.arange(cell_count) + 0.5))
             pair = np.full(knots.size, float(coordinate)), knots
             points.append(np.array(pair if axis == 0 else pair[::-1]))
         self.points = np.concatenate(points, axis=1)
+        count = self.points.shape[1]
+        starts = np.cumsum([0, *(side_points.shape[1] for side_points in points)]).tolist()
+        indices = [
+            (k // 2) * count + start + index
+            for k, (start, (index, _)) in enumerate(zip(starts, interpolation, strict=False))
+        ]
+        self.face_points = (
+            np.concatenate(indices, axis=1), np.concatenate([weight for _, weight in interpolation], axis=1)
+        )  # fmt: skip
+        face_counts = [index.shape[1] for index in indices]
+        self.signs = np.repeat([1.0, -1.0, 1.0, -1.0], face_counts)
+        self.ends = np.cumsum(face_counts)[:-1].tolist()
 
     @classmethod
     def for_grid(cls, grid: Grid) -> "OpenWater":
@@ -238,32 +259,60 @@ class OpenWater:
 
         The order is left, right, bottom, top. The sum over all faces is zero but for the sources of wakes.
         """
+        return np.split(self.inward_faces(velocity, window, fadings), self.ends)
+
+    def inward_faces(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> np.ndarray:
+        """Return ``inward`` of all sides end to end, shape (face,) [m/s]."""
         gather(velocity[0], velocity[1], np.array(window), self.blocks)
         x, y = self.middles
         strength, extra = self.blocks, []
         for fading in fadings:
             strength, sources = self._fade(strength, fading, window)
             extra.append(sources)
-        size = np.abs(strength).max(axis=0)
+        size = np.maximum.reduce(np.abs(strength))
         is_strong = size > MIN_STRENGTH_RATIO * size.max()
         positions = np.concatenate([np.array([x[is_strong], y[is_strong]]), *(e[:2] for e in extra)], axis=1)
         values = np.concatenate([strength[:, is_strong], *(e[2:] for e in extra)], axis=1)
         induced_velocity = np.zeros(self.points.shape)
         induce(self.points, positions, values, induced_velocity)
-        return self._on_faces(induced_velocity)
+        index, weight = self.face_points
+        faces: np.ndarray = self.signs * np.add.reduce(weight * induced_velocity.reshape(-1)[index])
+        return faces
 
-    def _on_faces(self, induced_velocity: np.ndarray) -> list[np.ndarray]:
-        """Return the velocity into the domain on the faces of each side, between the points of the sides [m/s].
+    def _weights(self, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
+        """Return the fraction of the strength that stays in each column of blocks along an axis, and what fades there.
 
         Args:
-            induced_velocity: induced velocity at the points of the sides, shape (2, point) [m/s].
+            fading: the side towards which the wake is faded.
+            window: padded cell indices around the bodies.
         """
-        sides, start = [], 0
-        for (index, weight), axis, sign in zip(self.interpolation, (0, 0, 1, 1), (1, -1, 1, -1), strict=True):
-            end = start + int(index[-1, -1]) + 1
-            sides.append(sign * (weight * induced_velocity[axis, start:end][index]).sum(axis=0))
-            start = end
-        return sides
+        axis, cells = fading.axis, self.cells[fading.axis]
+        middle = self.middles[0][0] if axis == 0 else self.middles[1][:, 0]
+        body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
+        clearance = (
+            (body_start if fading.is_lower_side else cells + 2 * PAD - body_stop) - PAD
+            if body_stop > body_start
+            else cells
+        )
+        lateral_window = (window[0], window[1]) if axis == 0 else (window[2], window[3])
+        guard = MIN_UNFADED_WIDTHS * (lateral_window[1] - lateral_window[0])
+        length = max(min(FADE_FRACTION * clearance, clearance - guard), SIDE)
+        key, side = (length, fading.fraction), (axis, fading.is_lower_side)
+        stored = self.fading_weights.get(side)
+        if stored is not None and stored[0] == key:
+            return stored[1:]
+
+        def weight(position: np.ndarray) -> np.ndarray:
+            """Return the fraction of the strength that stays, at positions along the axis [cells]."""
+            fraction = np.minimum(
+                np.maximum((position if fading.is_lower_side else cells - position) / length, 0.0), 1.0
+            )  # clip is slow
+            weights: np.ndarray = 1 - fading.fraction * (1 - fraction**2 * (3 - 2 * fraction))
+            return weights
+
+        fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
+        self.fading_weights[side] = key, weight(middle), fading_fraction
+        return self.fading_weights[side][1:]
 
     def _fade(self, strength: np.ndarray, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
         """Return the faded strengths of the blocks, and the sources that stand for the wake that has left.
@@ -275,41 +324,20 @@ class OpenWater:
             fading: the side towards which the wake is faded.
             window: padded cell indices around the bodies.
         """
-        axis, cells = fading.axis, self.cells[fading.axis]
+        axis = fading.axis
         axial, lateral = self.middles[axis], self.middles[1 - axis]
         middle = axial[0] if axis == 0 else axial[:, 0]
-        body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
-        clearance = (
-            (body_start if fading.is_lower_side else cells + 2 * PAD - body_stop) - PAD
-            if body_stop > body_start
-            else cells
-        )
-        lateral_window = (window[0], window[1]) if axis == 0 else (window[2], window[3])
-        guard = MIN_UNFADED_WIDTHS * (lateral_window[1] - lateral_window[0])
-        length = max(min(FADE_FRACTION * clearance, clearance - guard), SIDE)
-
-        def weight(position: np.ndarray) -> np.ndarray:
-            """Return the fraction of the strength that stays, at positions along the axis [cells]."""
-            fraction = np.minimum(
-                np.maximum((position if fading.is_lower_side else cells - position) / length, 0.0), 1.0
-            )  # clip is slow
-            weights: np.ndarray = 1 - fading.fraction * (1 - fraction**2 * (3 - 2 * fraction))
-            return weights
-
-        fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
+        keep, fading_fraction = self._weights(fading, window)
         vortex, moment = strength[1], strength[2] if axis == 0 else -strength[3]
         size = np.abs(vortex) * (fading_fraction if axis == 0 else fading_fraction[:, None])
-        centre = float((size * lateral).sum() / size.sum()) if size.sum() > 0 else 0.0
+        total = size.sum()
+        centre = float((size * lateral).sum() / total) if total > 0 else 0.0
         defect = -(vortex * (lateral - centre) + moment).sum(axis=axis) / SIDE
         turn = 1 if (axis == 0) != fading.is_lower_side else -1
         source = turn * fading_fraction * defect
-        positions = np.array([middle, np.full(middle.size, centre)])[:: 1 if axis == 0 else -1]
-        zeros = np.zeros(middle.size)
-        sheds = source != 0
-        keep = weight(middle)
-        return strength * (keep if axis == 0 else keep[:, None]), np.array([*positions, source, zeros, zeros, zeros])[
-            :, sheds
-        ]
+        sources = np.zeros((6, middle.size))
+        sources[axis], sources[1 - axis], sources[2] = middle, centre, source
+        return strength * (keep if axis == 0 else keep[:, None]), sources[:, source != 0]
 
 
 @dataclass(slots=True)

@@ -125,7 +125,9 @@ def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
 
 
 def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int, ...]) -> np.ndarray:
-    """Return the flux into a box through its sides: momentum, pressure and friction, shape (axis,) [(m/s)^2 cells].
+    """Return the flux into a box through its sides, shape (2, axis) [(m/s)^2 cells].
+
+    The rows are momentum with friction, and pressure.
 
     Args:
         velocity: velocity on the faces before the cells, shape (axis, ...) [m/s].
@@ -134,7 +136,7 @@ def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int
         box: as for ``momentum``.
     """
     ndim = len(velocity)
-    total = np.zeros(ndim)
+    total, pressed = np.zeros(ndim), np.zeros(ndim)
     for d in range(ndim):
         for end, outward_sign in ((box[2 * (ndim - 1 - d)], -1.0), (box[2 * (ndim - 1 - d) + 1], 1.0)):
 
@@ -152,14 +154,15 @@ def boundary_flux(velocity: np.ndarray, p: np.ndarray, nu: float, box: tuple[int
             normal_velocity, normal = at_side(velocity[d]), velocity[d]
             stretch = at_side(normal, ((d, 1),)) - at_side(normal, ((d, -1),))
             push = 0.5 * (at_side(p, ((d, -1),)) + at_side(p))
-            total[d] += outward_sign * (nu * stretch - normal_velocity**2 - push).sum()
+            total[d] += outward_sign * (nu * stretch - normal_velocity**2).sum()
+            pressed[d] -= outward_sign * push.sum()
             for c in set(range(ndim)) - {d}:
                 tangential = velocity[c]
                 before_side = at_side(tangential, ((d, -1),)) + at_side(tangential, ((d, -1), (c, 1)))
                 behind_side = at_side(tangential) + at_side(tangential, ((c, 1),))
                 shear = 0.5 * (behind_side - before_side + at_side(normal, ((c, 1),)) - at_side(normal, ((c, -1),)))
                 total[c] += outward_sign * (nu * shear - normal_velocity * 0.25 * (before_side + behind_side)).sum()
-    return total
+    return np.array([total, pressed])
 
 
 @dataclass(slots=True)
@@ -169,14 +172,14 @@ class ControlVolume:
     box: tuple[int, ...]
     """Padded cell indices, first and end along each axis, the last axis first."""
     last_balance: np.ndarray | None = None
-    """Momentum of water and bodies, and flow through the sides, at the last step, shape (3, axis)."""
+    """Momentum of water and bodies, flow through the sides, and pressure on them, at the last step, shape (4, axis)."""
 
     def start(self, water: Fluid) -> np.ndarray:
         """Store and return the balance now, from which the next step counts; see ``last_balance``."""
         self.last_balance = np.array(
             [
                 momentum(water.velocity, self.box), momentum(water.weighted_body_velocity, self.box),
-                boundary_flux(water.velocity, water.p, float(water.nu), self.box),
+                *boundary_flux(water.velocity, water.p, float(water.nu), self.box),
             ]
         )  # fmt: skip
         return self.last_balance
@@ -184,7 +187,8 @@ class ControlVolume:
     def force(self, water: Fluid, dt: float, push: tuple[float, ...], density: float) -> tuple[float, ...]:
         """Return the mean force on the bodies in the box over the step that just ended [N/m, N].
 
-        Not a number in the first step, unless ``start`` was called before it.
+        Momentum flows at the mean of the step's start and end. The pressure after a step is that which acted in it, as
+        the acceleration of the grid is. Not a number in the first step, unless ``start`` was called before it.
 
         Args:
             water: after the step.
@@ -200,7 +204,8 @@ class ControlVolume:
         body_cells = (1 - water.mu0[0]).sum(dtype=np.float64)
         rate = (balance[0] - balance[1] - previous_balance[0] + previous_balance[1]) / dt
         body = (cells - body_cells) * np.array(push)
-        total = density * h ** (water.ndim - 1) * (0.5 * (balance[2] + previous_balance[2]) + h * (body - rate))
+        flux = 0.5 * (balance[2] + previous_balance[2]) + balance[3]
+        total = density * h ** (water.ndim - 1) * (flux + h * (body - rate))
         return tuple(total.tolist())
 
 

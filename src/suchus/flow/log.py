@@ -69,21 +69,19 @@ class Log:
         )
 
     def reactions(
-        self, water: Fluid, outlines: Sequence[Markers], reference_points: list[tuple[float, ...]], dt: float,
-        push: tuple[float, ...], previous_contents: np.ndarray,
+        self, water: Fluid, reference_points: list[tuple[float, ...]], dt: float, push: tuple[float, ...],
+        previous_contents: np.ndarray,
     ) -> list[FlowLoads]:  # fmt: skip
-        """Return the loads on each body and its parts in the step that just ended.
+        """Return the loads on each body and its parts in the step that just ended; see ``store_contents``.
 
         Args:
             water: after the step.
-            outlines: markers of each body.
             reference_points: point of the torques of each body, in the frame of the grid [m].
             dt: length of the step [s].
             push: uniform acceleration of the water [m/s^2].
             previous_contents: ``region_contents`` at the start of the step.
         """
         grid, loads = self.setup.grid, []
-        self.store_contents(water, outlines)
         for rows, point, mirror_cuts in zip(water.rows, reference_points, water.mirror_cuts, strict=True):
             position = np.array(point)
             body_sums = [

@@ -10,13 +10,16 @@ from dataclasses import dataclass, field
 from html import escape, unescape
 from pathlib import Path
 from re import findall
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from suchus.core.errors import InvalidDesign, UnreadableFile
 from suchus.core.writing import new_file
 from suchus.flow.fields import Fields
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _UNITS = {"velocity": "m s-1", "pressure": "Pa", "vorticity": "s-1", "fluid_share": "1"}
 _NAMES = {
@@ -27,7 +30,7 @@ _NAMES = {
 }
 
 
-def snapshot(sim: Fields) -> xr.Dataset:
+def snapshot(sim: Fields) -> "xr.Dataset":
     """Return the fields at the cell centres at the present time, dimensions (``z``,) ``y`` and ``x`` [m].
 
     The velocity also has the dimension ``component``, and so has the vorticity in space. Coordinates and velocities are
@@ -36,6 +39,8 @@ def snapshot(sim: Fields) -> xr.Dataset:
     Args:
         sim: the simulation whose fields are read.
     """
+    import xarray as xr  # noqa: PLC0415  a quarter of the time of an import of flow, and few flows need it
+
     grid, (position, drift) = sim.water.grid, sim.frame
     velocity = np.stack([w + d for w, d in zip(sim.velocity, drift, strict=True)])
     names = tuple("xyz"[: grid.ndim])
@@ -159,6 +164,8 @@ def _add_to_netcdf(sim: Fields, path: Path) -> None:
     Raises:
         UnreadableFile: the file holds something else.
     """
+    import xarray as xr  # noqa: PLC0415  as above
+
     new = snapshot(sim)
     if sim.setup.follow is not None:  # a grid that travels: places relative to it, and where it is
         travelled = dict(zip("xyz", sim.frame[0], strict=False))

@@ -125,14 +125,14 @@ class Solid(Shape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return distance, normal and velocity on the points of a window; see ``Shape``."""
-        wx, wy = np.meshgrid(x, y)
+        wx, wy = x[None, :], y[:, None]
         d, nx, ny = self.distance(*pose.to_body(wx, wy))
         vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(wx, wy))
         return Field(d, *pose.rotate_in_plane(nx, ny), vx, vy, np.full(d.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""
-        centres, normal, length = _edges(self, spacing)
+        centres, normal, length, station = _edges(self, float(spacing))
         points = np.stack(pose.to_world(*centres))
         return Markers(
             points=points,
@@ -140,7 +140,7 @@ class Solid(Shape):
             velocities=np.stack(pose.velocity_in_plane(*points)),
             normals=np.stack(pose.rotate_in_plane(*normal)),
             spins=np.full((1, length.size), pose.spin),
-            station=np.cumsum(length) - length / 2,
+            station=station,
             side=np.zeros(length.size),
         )
 
@@ -172,20 +172,44 @@ def _cached_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
     return x, y
 
 
-def _edges(shape: Solid, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return centres, outward normals and lengths of about evenly spaced edges of the outline, in the body's frame.
+Edges = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""Edges of an outline in the body's frame: centres and outward normals, shape (2, edge) [m, -], their lengths and the
+arc lengths of their middles, shape (edge,) [m]."""
+
+
+def _edges(shape: Solid, spacing: float) -> Edges:
+    """Return about evenly spaced edges of the outline.
+
+    The outline is rigid. The edges are cached if the shape is hashable.
 
     Args:
         shape: the shape.
         spacing: length of an edge [m].
     """
+    try:
+        return _cached_edges(shape, spacing)
+    except TypeError:
+        return _measure_edges(shape, spacing)
+
+
+@lru_cache(maxsize=64)
+def _cached_edges(shape: Solid, spacing: float) -> Edges:
+    edges = _measure_edges(shape, spacing)
+    for array in edges:
+        array.flags.writeable = False
+    return edges
+
+
+def _measure_edges(shape: Solid, spacing: float) -> Edges:
+    """Return what ``_edges`` does, without a cache."""
     coarse_ring = np.stack(_ring(shape, _COARSE_POINTS))
     perimeter = float(np.hypot(*(np.roll(coarse_ring, -1, axis=1) - coarse_ring)).sum())
     corners = np.stack(_ring(shape, max(_MIN_POINTS, int(np.ceil(perimeter / spacing)))))
     next_corners = np.roll(corners, -1, axis=1)
     edges = next_corners - corners
     length = np.hypot(*edges)
-    return (corners + next_corners) / 2, np.stack([edges[1], -edges[0]]) / length, length
+    normals = np.stack([edges[1], -edges[0]]) / length
+    return (corners + next_corners) / 2, normals, length, np.cumsum(length) - length / 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

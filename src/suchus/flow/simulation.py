@@ -126,7 +126,8 @@ class Simulation(Fields):
                 component[:] = setup.initial_velocity(c, layer.grid) - self.frame[1, c]
             layer.border.stream = stream
         self._walls = contact.wall_planes(setup.sides, setup.coarse_grid or setup.grid)
-        self._is_placed = False
+        self._is_placed, self._are_static = False, all(b.is_static for b in self._bodies)
+        self._layer_stream: tuple[float, ...] | None = None
         self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
@@ -348,8 +349,9 @@ class Simulation(Fields):
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
         poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
-        moving = self.setup.follow is not None or not all(b.is_static for b in self._bodies)
-        if moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE:
+        moving = self.setup.follow is not None or not self._are_static
+        has_new_places = moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE
+        if has_new_places:
             self.water.offset = offset
             self.water.place(self._bodies, poses, time)
             self._is_placed = True
@@ -358,23 +360,28 @@ class Simulation(Fields):
             cell = self.setup.grid.cell
             self._outlines = [b.shape.markers(time, p, cell) for b, p in zip(self._bodies, poses, strict=True)]
             self._refuse_passage(self._outlines, time)
-        markers = self._outlines
-        self._watch.layers(
-            [
-                self.setup.layer_error(b, m, self._stream(time), time, slack=LAYER_SPEED_FACTOR)
-                for b, m in zip(self._bodies, markers, strict=True)
-            ]
-        )
-        side_speed = max(length(self._stream(time)), self.water.imposed(time))
-        marker_speeds = [_fastest_marker(m) for m in markers]  # a body may just start to move
-        self._speed = max([self._speed, side_speed, *marker_speeds])
+        stream = self._stream(time)
+        if has_new_places or stream != self._layer_stream:
+            self._layer_stream = stream
+            self._watch.layers(
+                [
+                    self.setup.layer_error(b, m, stream, time, slack=LAYER_SPEED_FACTOR)
+                    for b, m in zip(self._bodies, self._outlines, strict=True)
+                ]
+            )
+        imposed_speed = self.water.imposed(time)
+        marker_speeds = [_fastest_marker(m) for m in self._outlines]  # a body may just start to move
+        self._speed = max([self._speed, length(stream), imposed_speed, *marker_speeds])
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
-        self.water.step(dt, self._stream(time), tuple(map(float, push)), limits, time)
+        self.water.step(dt, stream, tuple(map(float, push)), limits, time)
         self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
-        self._latest_step = _LatestStep(dt, poses, push, drift, self._log.region_contents)
-        self._note(self._latest_step)
+        contents = self._log.region_contents
+        self._latest_step = _LatestStep(
+            dt, poses, push, drift, contents, max(marker_speeds, default=0.0), imposed_speed
+        )
+        self._note(self._latest_step, has_new_places=has_new_places)
         self._log.control(self.water, dt, push)
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
@@ -431,11 +438,9 @@ class Simulation(Fields):
             depth: how far it lies beyond the wall [m].
             time: time [s].
         """
-        speed = float(-wall.inward * outline.velocities[wall.axis].mean())
         text = (
             f"at t = {time:.4g} s {body.name} lies {depth:.3g} m deep in the {wall.name} side, a "
-            f"{type(getattr(self.setup.sides, wall.name)).__name__} at {'xyz'[wall.axis]} = {wall.position:.6g} m, and "
-            f"moves into it with {speed:.3g} m/s"
+            f"{type(getattr(self.setup.sides, wall.name)).__name__} at {'xyz'[wall.axis]} = {wall.position:.6g} m"
         )
         if body.name not in self.swimmers:
             return f"{text}: give a motion that stays in the water, or enlarge the grid."
@@ -444,13 +449,29 @@ class Simulation(Fields):
         tangential = [float(np.ptp(line)) for d, line in enumerate(outline.points) if d != wall.axis]
         weight = abs(self.swimmers[body.name].applied[wall.axis]) if law is None else 0.0
         mass = (body.density or self.setup.density) * body.shape.mass(time).size  # type: ignore[union-attr]
-        needed = (1.5 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
+        speed = self._fastest_approach(body.name, outline, wall)
+        needed = (3.0 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
         if law is not None:
             needed = max(needed, 4 * law.pressure)
         return (
-            f"{text}: give contact=BodyContact(gap={gap:.3g}, pressure={needed:.2g})"
-            f"{'' if law is None else f', whose pressure is now {law.pressure:.3g} Pa'}."
+            f"{text}, and moved towards it with up to {speed:.3g} m/s: give contact=BodyContact(gap={gap:.3g}, "
+            f"pressure={needed:.2g}){'' if law is None else f', whose pressure is now {law.pressure:.3g} Pa'}."
         )
+
+    def _fastest_approach(self, name: str, outline: Markers, wall: contact.WallPlane) -> float:
+        """Return the largest speed with which a body has moved towards a wall so far [m/s].
+
+        The film of water has slowed the body by the time at which it reaches the wall.
+
+        Args:
+            name: name of the body.
+            outline: its outline or skin now, in the frame of the grid.
+            wall: the wall.
+        """
+        velocities = [float(outline.velocities[wall.axis].mean())]
+        if self._log.rows:
+            velocities += self._log.record.column(f"velocity_{'xyz'[wall.axis]}", name).tolist()
+        return max(0.0, *(-wall.inward * velocity for velocity in velocities))
 
     def _torque_point(self, name: str, pose: Pose) -> tuple[float, ...]:
         """Return the reference point of a body's torque in the frame of the grid [m]."""
@@ -458,17 +479,20 @@ class Simulation(Fields):
             return pose.position
         return tuple((np.array(self.swimmers[name].place_and_rate.position) - self.frame[0]).tolist())
 
-    def _note(self, step: "_LatestStep") -> None:
+    def _note(self, step: "_LatestStep", *, has_new_places: bool) -> None:
         """Compute the forces of a step, give them to the free bodies, and append a row to the record.
 
         Args:
             step: the step, whose fields are those of the water now.
+            has_new_places: whether the bodies, or their velocities, have been placed in the water in this step.
         """
         water, setup, dt, poses, outlines = self.water, self.setup, step.dt, step.poses, self._outlines
         fastest = self._fastest = water.fastest()
         torque_points = [self._torque_point(b.name, p) for b, p in zip(self._bodies, poses, strict=True)]
-        values, body_speed = [], 0.0
-        self._loads = self._log.reactions(water, outlines, torque_points, dt, step.push, step.contents_before)
+        if has_new_places:
+            self._log.store_contents(water, outlines)
+        values: list[float] = []
+        self._loads = self._log.reactions(water, torque_points, dt, step.push, step.contents_before)
         part_values: list[float] = []
         for k, (body, markers, point, loads) in enumerate(
             zip(self._bodies, outlines, torque_points, self._loads, strict=True)
@@ -485,9 +509,9 @@ class Simulation(Fields):
             error = max(self._watch.errors[k], self._start_error(body))
             values += columns(load, act, step.drift, body_pose, error)
             part_values += part_columns(body, loads.parts, point, poses[k], self.time, step.drift)
-            body_speed = max(body_speed, _fastest_marker(markers))
-        self._speed = max(length(water.border.stream), body_speed, min(fastest, 10 * self._speed), 1e-12)
-        self._reference = max(self._reference, length(water.border.stream), body_speed, water.imposed(self.time))
+        stream_speed, body_speed = length(water.border.stream), step.body_speed
+        self._speed = max(stream_speed, body_speed, min(fastest, 10 * self._speed), 1e-12)
+        self._reference = max(self._reference, stream_speed, body_speed, step.imposed_speed)
         solves = water.solves
         row = np.array(
             [
@@ -564,7 +588,9 @@ class Simulation(Fields):
         ]
         self.clear_shape_cache()
         self._log.rows.pop()
-        self._note(self._latest_step)
+        body_speed = max(map(_fastest_marker, self._outlines), default=0.0)
+        self._latest_step = self._latest_step._replace(body_speed=body_speed)
+        self._note(self._latest_step, has_new_places=True)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
         """Return the generalised added mass of a body for motions of its parts; sides and other bodies stay fixed.
@@ -801,6 +827,10 @@ class _LatestStep(NamedTuple):
     """Mean velocity of the grid [m/s]."""
     contents_before: np.ndarray
     """Momentum in the bodies' regions at the start of the step; see ``momentum.add_contents``."""
+    body_speed: float
+    """Fastest speed of a body's surface in the frame of the grid [m/s]."""
+    imposed_speed: float
+    """Fastest speed that a side imposes at its end [m/s]."""
 
 
 def _even_step(dt: float, remaining: float) -> float:

@@ -143,6 +143,8 @@ class Fluid:
         slabs = shape[0], int(np.prod(shape[1:]))
         vector = (self.ndim, *shape)
         # Fluid: now, predicted, corrected; pressure
+        self._flat_views: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        self._flat_near_views: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.velocity: np.ndarray = np.zeros(vector, dtype)
         self._predicted: np.ndarray = np.zeros(vector, dtype)
         self._corrected: np.ndarray = np.zeros(vector, dtype)
@@ -152,11 +154,13 @@ class Fluid:
         self._x: np.ndarray = np.zeros(slabs, dtype)
         self._d: np.ndarray = np.zeros(slabs, dtype)
         self._q: np.ndarray = np.zeros(slabs, dtype)
-        self._layout = poisson.levels(grid.cells)
+        self._layout, self._cell_count = poisson.levels(grid.cells), prod(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
         parts = (multigrid.level(self._store, self._layout, self.inner, kind, 0) for kind in range(multigrid.FACES))
         faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
         self._views = (*parts, faces.reshape(vector))  # of its finest level
+        for a in (self.velocity, self._predicted, self._corrected, self.p, self.mu0, self.passage):
+            self._flat_views[id(a)] = a, a.reshape(*a.shape[: a.ndim - self.ndim + 1], -1)
         self._patches = patch.patch_layouts(self._layout, self.repeats)
         self._buffer: np.ndarray = np.zeros((patch.FACES + self.ndim, 0), dtype)
         self._sums = np.zeros((shape[0], 4))
@@ -193,9 +197,20 @@ class Fluid:
         return self._corrected
 
     def _flat(self, a: np.ndarray) -> np.ndarray:
-        """Return a field or values of the window as the kernels see them: slabs, and components before them."""
-        component_axes = a.ndim - self.ndim
-        return a.reshape(*a.shape[: component_axes + 1], -1)
+        """Return a field or values of the window as the kernels see them: slabs, and components before them.
+
+        The views of arrays that last are kept: making one takes as long as a kernel call.
+        """
+        key = id(a)
+        entry = self._flat_views.get(key) or self._flat_near_views.get(key)
+        if entry is not None and entry[0] is a:
+            return entry[1]
+        return a.reshape(*a.shape[: a.ndim - self.ndim + 1], -1)
+
+    def _keep_flat(self, *arrays: np.ndarray) -> None:
+        """Keep the views of arrays that last as long as the window; see ``_flat``."""
+        for a in arrays:
+            self._flat_near_views[id(a)] = a, a.reshape(*a.shape[: a.ndim - self.ndim + 1], -1)
 
     def _set_window(self, window: Window) -> None:
         """Set the window around the bodies and allocate its arrays.
@@ -212,6 +227,8 @@ class Fluid:
         self.b: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self._raw: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self.source: np.ndarray = np.zeros(shape, self.dtype)
+        self._flat_near_views.clear()
+        self._keep_flat(self.mu1, self.b, self._raw, self.source)
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
         """Return values of another window in the present one, shape (axis, ...), 0 outside the other window.
@@ -325,6 +342,7 @@ class Fluid:
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
             self.mean = list(0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b))
+            self._keep_flat(*self.mean, *self.owners)
             self._widening(bodies)
         if has_moved:
             poisson.place_window(self._layout, unite(filled_windows, self.ndim))
@@ -367,10 +385,11 @@ class Fluid:
             self.overlap = max(self.overlap, overlap)
             distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
             mu0: np.ndarray = np.empty(distance.size, self.dtype)
-            mu1: np.ndarray = np.empty((self.ndim, distance.size), self.dtype)
-            fill(distance.ravel(), np.array([n.ravel() for n in f.normal]), thickness.ravel(), mu0, mu1)
+            normal = np.empty((self.ndim, distance.size))
+            for d, component in enumerate(f.normal):
+                normal[d] = component.ravel()
+            fill(distance.ravel(), normal, thickness.ravel(), mu0, self.mu1[c].reshape(self.ndim, -1))
             self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
-            self.mu1[c] = mu1.reshape(self.ndim, *distance.shape)
             self.b[c] = f.velocity[c]
         first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.ndim)]
         for body, pose in zip(bodies, poses, strict=True):
@@ -525,8 +544,9 @@ class Fluid:
             stage: the stage; its ``result`` is written.
             push: uniform acceleration of the water times the cell [(m/s)^2].
         """
-        result, blend, base, rate = (self._flat(a) for a in stage[:4])
-        level_layout, raw, p = self._layout[0], self._flat(self._raw), self._flat(self.p)
+        flat = self._flat
+        result, blend, base, rate = flat(stage.result), flat(stage.blend), flat(stage.base), flat(stage.rate)
+        level_layout, raw, p = self._layout[0], flat(self._raw), flat(self.p)
         self._advance_all(
             result,
             blend,
@@ -546,7 +566,7 @@ class Fluid:
         if self.window[1] > self.window[0]:
             self._clear_raw_on_sides()
             self._extend_raw()
-            b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
+            b, mu0, mu1, passage = flat(self.b), flat(self.mu0), flat(self.mu1), flat(self.passage)
             for c in range(self.ndim):
                 immerse(
                     result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near_layout, self.inner,
@@ -597,18 +617,19 @@ class Fluid:
         if self.window[1] <= self.window[0]:
             return
         dt, keep, near_layout, inner = float(stage.dt), float(stage.blend_fraction), self._near_layout, self.inner
-        sums, p = np.zeros_like(self.immersion_sums), self._flat(self.p)
+        sums, p, flat = np.zeros_like(self.immersion_sums), self._flat(self.p), self._flat
         result, blend, raw, passage, mu1 = (
-            self._flat(a) for a in (stage.result, stage.blend, self._raw, self.passage, self.mu1)
-        )
-        owners = [self._flat(owner) for owner in self.owners]
+            flat(stage.result), flat(stage.blend), flat(self._raw), flat(self.passage), flat(self.mu1)
+        )  # fmt: skip
         for c, mean in enumerate(self.mean):
             add_immersion_impulse(
-                sums, result[c], blend[c], raw[c], self._flat(mean), passage[c], mu1[c], p, owners[c], c, near_layout,
-                inner, dt, keep,
+                sums, result[c], blend[c], raw[c], flat(mean), passage[c], mu1[c], p, flat(self.owners[c]), c,
+                near_layout, inner, dt, keep,
             )  # fmt: skip
         self.subtract_dilatation_work(sums, self.p, dt)
-        self.immersion_sums += weight * (sums + self.joint_pressure_sums(self.p, dt))
+        if self._jointed:
+            sums = sums + self.joint_pressure_sums(self.p, dt)
+        self.immersion_sums += weight * sums
         if len(self.immersion_sums) > len(self.rows):
             self.internal_pressure_sums += self.pressures(self.p, weight * dt)
 
@@ -707,31 +728,21 @@ class Fluid:
             dt: duration for which the pressure acts [cells per (m/s)].
             limits: mean and largest divergence that may be left [m/s per cell].
         """
-        r, level_layout = self._level_view(multigrid.B), self._layout[0]
+        r, level_layout, near_layout, inner = self._views[multigrid.B], self._layout[0], self._near_layout, self.inner
         u, source = self._flat(velocity), self._flat(self.source)
-        mean = mean_residual(u, source, level_layout, self._near_layout, self.inner)
+        mean = self.dtype(mean_residual(u, source, level_layout, near_layout, inner))
         residual(
-            r,
-            u,
-            source,
-            self._level_view(multigrid.DINV),
-            level_layout,
-            self._near_layout,
-            self.dtype(mean),
-            self.inner,
-            self.repeats,
-            self._sums,
+            r, u, source, self._views[multigrid.DINV], level_layout, near_layout, mean, inner, self.repeats, self._sums
         )
         sums = self._sums[PAD:-PAD]
-        cells = prod(self.grid.cells)
-        solve = poisson.Solve(0, float(sums[:, 0].sum()) / cells, float(sums[:, 1].max()))
+        solve = poisson.Solve(0, float(sums[:, 0].sum()) / self._cell_count, float(sums[:, 1].max()))
         if (
             solve.mean_divergence > MIN_SOLVED_RESIDUAL * limits[0]
             or solve.max_divergence > MIN_SOLVED_RESIDUAL * limits[1]
         ):
-            solve, parts = self._solve(limits)
-            x, gain = (self._d, self._level_view(multigrid.X)), self.dtype(1 / dt)
-            correct(u, self._flat(self.p), *x, *parts, self._flat(self.passage), level_layout, self.inner, gain)
+            solve, (a, b) = self._solve(limits)
+            d, x, gain = self._d, self._views[multigrid.X], self.dtype(1 / dt)
+            correct(u, self._flat(self.p), d, x, a, b, self._flat(self.passage), level_layout, inner, gain)
             self._seal(self.p)
             self.border.fill(velocity)
         self.solves.append(solve)
@@ -739,9 +750,11 @@ class Fluid:
     def _seal(self, x: np.ndarray) -> None:
         """Fill the cells beside the domain with mirrored values, or with those at the other end of a periodic axis."""
         for axis, is_periodic in zip(reversed(range(self.ndim)), self.repeats, strict=True):
-            lines, n = x.swapaxes(axis, 0), x.shape[axis]
-            lines[PAD - 1] = lines[n - PAD - 1 if is_periodic else PAD]
-            lines[n - PAD] = lines[PAD if is_periodic else n - PAD - 1]
+            before: tuple[slice | int, ...] = (slice(None),) * axis
+            first, last = PAD, int(x.shape[axis]) - PAD - 1
+            lower_source, upper_source = (last, first) if is_periodic else (first, last)
+            x[(*before, first - 1)] = x[(*before, lower_source)]
+            x[(*before, last + 1)] = x[(*before, upper_source)]
 
     def potential(self, acceleration: np.ndarray, limit: float) -> np.ndarray:
         """Return the pressure of the water's response to an acceleration of the bodies.

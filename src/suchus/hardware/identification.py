@@ -9,11 +9,15 @@ with the torque constant k, the current I, the reflected inertia J, Coulomb fric
 by k it is fitted to the motion. Noise of the motion would bias least squares, so that the same terms of the goals,
 which have none, are the instruments (Janot, Vandanjon and Gautier 2014, IEEE Trans. Control Syst. Technol. 22, 132).
 The goal acts on the same torque through the servo's loop, from which delay and play follow.
+
+A robot that walks on its feet bears forces that nobody measures. While a foot swings, its limb is free, and if it
+swings quickly, the inertia follows with the maker's torque constant (``identify_walking``). Its own torque constant and
+friction do not: the load of a swinging limb is small, and its friction has one direction in most of the swing.
 """
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import pi
 from typing import Any
 
@@ -23,10 +27,13 @@ from jaxtyping import Bool, Float
 
 from suchus.core.errors import IncompatibleRecord
 from suchus.hardware.calibrate import FitEstimate
-from suchus.hardware.log import hinge_angles
+from suchus.hardware.log import foot_centers, hinge_angles
+from suchus.hardware.protocols import servo_table
 from suchus.robot.design import Robot, layout
+from suchus.robot.motion import START
 from suchus.robot.motors import motors
 from suchus.sim.model.inverse import held_torques
+from suchus.visual.skin import poses
 
 MIN_DURATION = 8.0
 """Duration of a log from which servos are identified [s]."""
@@ -38,6 +45,15 @@ MAX_RELATIVE_ERROR = 0.15
 MODEL_ERROR = 0.02
 """Error of the model beside the scatter, as a fraction of a number: steps of registers, friction within a period
 [-]."""
+MAX_UNEXPLAINED_SWING = 0.1
+"""The same of a swinging limb with the maker's torque constant, beyond which its foot is taken for one that touches the
+ground [-]."""
+_MIN_SWING_TIME = 2.0  # [s]; turning of a servo in swings, from which its inertia is found
+_MIN_LIFT = 0.05  # of the limb's reach; rise of a foot from which it counts as one that swings [-]
+_LIFTED = 0.3  # of the rise of a foot, above which it is in the air [-]
+_LIFT_MARGIN = 2  # control periods around a swing that do not count [-]
+_TRUNK_ACCELERATION = 0.15  # of gravity; acceleration and tilt of a walking trunk, which nobody measures [-]
+_SWING_MODEL_ERROR = 0.05  # error of an inertia beside the scatter, of its value [-]
 _MIN_SPEED = 0.05  # [rad/s]; below it the direction of the friction is not known
 _SMOOTHING = 7  # control periods over which the terms of a fit are averaged [-]
 _MIN_MINORITY = 0.05  # of the time that a servo is off to its rarer side, from which play is seen [-]
@@ -124,15 +140,13 @@ def identify_servos(
     refusals: dict[str, str] = {}
     balances: dict[str, _Balance] = {}
     for i, name in enumerate(names):
+        seconds = _turning_time(motion, i, period)
         if not np.isfinite(motion.load[:, i]).any():
             refusals[name] = "it turns no hinge of its own"
-            continue
-        balance = _Balance(motion, i)
-        if balance.duration(period) < 0.25 * MIN_DURATION:
-            seconds = balance.duration(period)
+        elif seconds < 0.25 * MIN_DURATION:
             refusals[name] = f"it turned faster than {_MIN_SPEED:g} rad/s for {seconds:.3g} s only"
         else:
-            balances[name] = balance
+            balances[name] = _Balance(motion, i)
     model_of = {name: (models or {}).get(name, "") for name in names}
     constants = {model: _shared_constant(balances, model, model_of) for model in set(model_of.values())}
     identified = {}
@@ -153,6 +167,108 @@ def identify_servos(
         name, refusal = next(iter(refusals.items()))
         raise IncompatibleRecord(f"the log identifies no servo; of {name}: {refusal}. {_remedy(robot)}")
     return identified, refusals
+
+
+def identify_walking(
+    record: xr.Dataset, robot: Robot, models: Mapping[str, str]
+) -> tuple[Mapping[str, ServoIdentification], Mapping[str, str]]:
+    """Return what a log of a robot that walks on its feet shows of the servos of its limbs.
+
+    A limb is free while its foot is lifted, which the measured angles say. Then inertia, weight and friction account
+    for the current. The inertia is counted with the makers' torque constants. Torque constant, friction and damping are
+    not numbers: only a robot that is held in the air shows them.
+
+    Args:
+        record: log of one drive, with ``servo_current``; goals act after the sample in which they stand.
+        robot: the robot, with the masses of its bodies.
+        models: model of each servo by its name.
+
+    Returns:
+        Of each servo its numbers, by its name; and of each that the log does not show a clause that says why.
+
+    Raises:
+        IncompatibleRecord: the log has no currents, is too short, or no limb swings quickly enough.
+        UnknownName: a model whose torque constant is not known.
+    """
+    record = record.sel(time=slice(START, None))  # before it the robot goes to its first posture, and stands
+    period = _check_log(record, robot)
+    motion = _motion(record, robot, period)
+    swings = _swings(record.servo_angle.values, robot)
+    swinging = replace(motion, is_known=motion.is_known & swings)
+    names, limb_servos = layout(robot).servos, {i for limb in layout(robot).limbs for i in _places(limb.servos)}
+    identified, refusals = {}, {}
+    for i, name in enumerate(names):
+        seconds = _turning_time(swinging, i, period)
+        if i not in limb_servos or not np.isfinite(motion.load[:, i]).any():
+            refusals[name] = "it turns no joint of a limb, so that it is never free of the ground"
+        elif seconds < _MIN_SWING_TIME:
+            refusals[name] = (
+                f"it turned faster than {_MIN_SPEED:g} rad/s for {seconds:.3g} s of all swings only, and "
+                f"{_MIN_SWING_TIME:g} s are needed"
+            )
+        else:
+            constant = FitEstimate(value=servo_table(models[name]).torque_per_ampere, half=0.0)
+            balance = _Balance(swinging, i)
+            armature = balance.swing_inertia(constant.value)
+            if isinstance(armature, str):
+                refusals[name] = armature
+            else:
+                loop = _identify_loop(motion, record.servo_target.values[:, i], i, period, constant)
+                unknown = FitEstimate(value=float("nan"), half=float("inf"))
+                identified[name] = ServoIdentification(
+                    torque_constant=unknown, armature=armature, friction=unknown, damping=unknown,
+                    unexplained=balance.unexplained_with(constant.value), **loop,
+                )  # fmt: skip
+    if not identified:
+        candidates = [name for i, name in enumerate(names) if i in limb_servos] or [*names]
+        raise IncompatibleRecord(
+            f"the log identifies no servo; of {candidates[0]}: {refusals[candidates[0]]}. Walk for "
+            f"{2 * MIN_DURATION:g} s or more in a gait whose feet are lifted and swing within half a second, as "
+            f"high_walk. {_remedy(robot)}"
+        )
+    return identified, refusals
+
+
+def _places(servos: slice) -> range:
+    """Return the places of the servos of a limb."""
+    return range(servos.start, servos.stop)
+
+
+def _swings(angles: Float[np.ndarray, "sample servo"], robot: Robot) -> Bool[np.ndarray, "period servo"]:
+    """Return in which control periods the foot of each servo's limb is in the air; never for servos of no limb.
+
+    The height of a foot counts from the root of the robot, and from the height of this foot in stance, so that a body
+    that is not level changes nothing.
+
+    Args:
+        angles: measured angles of the servos [rad].
+        robot: the robot.
+    """
+    count, robot_layout = len(angles), layout(robot)
+    filled = np.where(np.isfinite(angles), angles, 0.0)
+    level = np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))
+    heights = foot_centers(robot, poses(robot, np.zeros((count, 3)), level, hinge_angles(robot, filled)))[..., 2]
+    swings = np.zeros((count - 1, angles.shape[1]), dtype=bool)
+    for limb, height in zip(robot_layout.limbs, heights.T, strict=True):
+        low, high = np.percentile(height, [5.0, 95.0])
+        if high - low < _MIN_LIFT * limb.girdle.limb.reach:
+            continue
+        is_lifted = height > low + _LIFTED * (high - low)
+        window = np.ones(2 * _LIFT_MARGIN + 2)
+        is_free = np.convolve(is_lifted, window, mode="full")[_LIFT_MARGIN + 1 :][: count - 1] >= window.size - 0.5
+        swings[:, limb.servos] = is_free[:, None]
+    return swings
+
+
+def _turning_time(motion: _LoggedMotion, i: int, period: float) -> float:
+    """Return for how long a servo turned and everything of it was measured [s]."""
+    return float(_turns(motion, i).sum()) * period
+
+
+def _turns(motion: _LoggedMotion, i: int) -> Bool[np.ndarray, " period"]:
+    """Return in which control periods a servo turned and everything of it was measured."""
+    is_known = motion.is_known[:, i] & np.isfinite(motion.load[:, i]) & np.isfinite(motion.current[:, i])
+    return np.asarray(is_known & (np.abs(motion.speed[:, i]) > _MIN_SPEED))
 
 
 def _shared_constant(balances: Mapping[str, "_Balance"], model: str, model_of: Mapping[str, str]) -> FitEstimate | None:
@@ -266,8 +382,7 @@ class _Balance:
         constant = np.ones_like(speed)
         self._terms = np.column_stack([motion.acceleration[:, i], np.sign(speed), speed, constant])
         self._instruments = np.column_stack([motion.goal_acceleration[:, i], np.sign(goal_speed), goal_speed, constant])
-        is_known = motion.is_known[:, i] & np.isfinite(self.load) & np.isfinite(self.current)
-        self.is_used = is_known & (np.abs(speed) > _MIN_SPEED)
+        self.is_used = _turns(motion, i)
         self._goal_load = motion.goal_load[:, i]
         self._joint_fit = self._fit(
             np.column_stack([self.load, self._terms]), self.current,
@@ -279,14 +394,41 @@ class _Balance:
         smooth_terms, smooth_instruments = (_smooth(columns, self.is_used) for columns in (terms, instruments))
         return _Fit(smooth_terms, _smooth(values[:, None], self.is_used)[:, 0], self.is_used, smooth_instruments)
 
-    def duration(self, period: float) -> float:
-        """Return for how long the servo turned [s]."""
-        return float(self.is_used.sum()) * period
-
     @property
     def unexplained(self) -> float:
         """Root mean square of the current that the motion does not explain, over that of the current [-]."""
         return float(self._joint_fit.residual.std() / max(float(self.current[self.is_used].std()), 1e-12))
+
+    def unexplained_with(self, torque_constant: float) -> float:
+        """Return the same with a known torque constant [N m/A]."""
+        torque = torque_constant * self.current - self.load
+        fit = self._fit(self._terms, torque, self._instruments)
+        return float(fit.residual.std() / max(float(torque[self.is_used].std()), 1e-12))
+
+    def swing_inertia(self, torque_constant: float) -> FitEstimate | str:
+        """Return the inertia of a limb that swings below a walking trunk [kg m2], or a clause that says why not.
+
+        To the scatter comes the torque by which tilt and acceleration of the trunk change the load.
+
+        Args:
+            torque_constant: torque constant of the maker [N m/A].
+        """
+        unexplained = self.unexplained_with(torque_constant)
+        if unexplained > MAX_UNEXPLAINED_SWING:
+            return (
+                f"{unexplained:.0%} of its current in the swings does not follow from weight, inertia and friction, as "
+                "if its foot touched the ground"
+            )
+        torque = torque_constant * self.current - self.load
+        fit = self._fit(self._terms, torque, self._instruments)
+        columns = _smooth(self._terms, self.is_used)[self.is_used]
+        unmeasured = (_TRUNK_ACCELERATION * float(np.sqrt((self.load[self.is_used] ** 2).mean()))) ** 2
+        variance = unmeasured / _INDEPENDENT_SAMPLES * np.linalg.pinv(columns.T @ columns / len(columns))[0, 0]
+        half = np.sqrt(fit.half(0) ** 2 + _Z_95**2 * variance + (_SWING_MODEL_ERROR * fit.value(0)) ** 2)
+        armature = FitEstimate(value=fit.value(0), half=float(half))
+        if not armature.half < MAX_RELATIVE_ERROR * abs(armature.value):
+            return f"its inertia is {armature} kg m2 only: it swings too calmly to tell it from friction"
+        return armature
 
     @property
     def is_free(self) -> bool:

@@ -17,7 +17,7 @@ from suchus.core.files import check_replaceable, check_writable, load, new_folde
 from suchus.hardware import BusClock, Rig, WallClock, read_wiring, write_wiring
 from suchus.hardware.bus import BusPlace, Wiring, straight
 from suchus.hardware.calibrate import FitEstimate, find_wiring, find_zeros, fit_log, fits_text
-from suchus.hardware.identification import bam_parameters, identification_table, identify_servos
+from suchus.hardware.identification import bam_parameters, identification_table, identify_servos, identify_walking
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import Robot, layout
 from suchus.robot.gaits import gait_of
@@ -51,11 +51,14 @@ class CalibrateOptions:
     held: tyro.conf.FlagCreatePairsOff[bool] = False
     """The log is of a robot whose trunk was held in the air: inertia, friction, torque constant, delay and play follow
     from the masses of its file, for log."""
+    walked: tyro.conf.FlagCreatePairsOff[bool] = False
+    """The log is of a robot that walked on its feet in a quick gait: inertia, delay and play of the servos of its limbs
+    follow from the swings of its feet and the makers' torque constants, for log."""
     json: Path | None = None
     """New folder for one JSON file a servo, as the project Better Actuator Models reads it; with --held."""
     out: Path | None = None
-    """The new file; by default hardware_wired.toml, hardware_zeroed.toml, servos_measured.csv, or with --held
-    servos_identified.csv."""
+    """The new file; by default hardware_wired.toml, hardware_zeroed.toml, servos_measured.csv, or with --held or
+    --walked servos_identified.csv."""
 
 
 _IDENTIFIED = "servos_identified.csv"
@@ -73,18 +76,25 @@ def calibrate(words: Sequence[str]) -> int:
         "Find out how a robot is wired, where its zeros are and how stiff its servos are; files are never changed."
     )
     options = parse(CalibrateOptions, "suchus calibrate", words, description)
-    if (options.held or options.json is not None) and options.what != "log":
-        raise BadCommand(f"--held and --json are for suchus calibrate log; leave them out of calibrate {options.what}.")
+    is_identified = options.held or options.walked
+    if (is_identified or options.json is not None) and options.what != "log":
+        raise BadCommand(
+            f"--held, --walked and --json are for suchus calibrate log; leave them out of calibrate {options.what}."
+        )
+    if options.held and options.walked:
+        raise BadCommand(
+            "--held and --walked contradict each other: a robot in the air does not walk; say one of them."
+        )
     if options.json is not None and not options.held:
         raise BadCommand("--json needs what only a robot in the air shows: say --held if its trunk was held.")
-    output = options.out or Path(_IDENTIFIED if options.held else _NEW[options.what])
+    output = options.out or Path(_IDENTIFIED if is_identified else _NEW[options.what])
     check_writable(output.parent)
     check_replaceable(output)
     if options.json is not None:
         check_writable(options.json.parent)
         check_replaceable(options.json)
     if options.what == "log":
-        return _identify_log(options, output) if options.held else _fit_log(options, output)
+        return _identify_log(options, output) if is_identified else _fit_log(options, output)
     rig = Rig(options.robot, _initial_wiring(options), has_clock=options.clock == "bus")
     try:
         if options.what == "wiring":
@@ -160,7 +170,7 @@ def _fit_log(options: CalibrateOptions, output: Path) -> int:
 
 
 def _identify_log(options: CalibrateOptions, output: Path) -> int:
-    """Identify the servos of a robot that was held in the air, print and write them, and return 0."""
+    """Identify the servos of a robot that was held in the air or walked, print and write them, and return 0."""
     if options.record is None:
         raise BadCommand("suchus calibrate log needs the record.nc of a drive, as out/drive_belly_crawl/record.nc.")
     record = load(options.record)
@@ -168,9 +178,12 @@ def _identify_log(options: CalibrateOptions, output: Path) -> int:
     if options.hardware.exists():
         wiring = read_wiring(options.hardware, options.robot)
         models = {servo.name: servo.model for servo in wiring.servo}
-    identified, refusals = identify_servos(
-        record.isel(run=0) if "run" in record.dims else record, options.robot, models or None
-    )
+    record = record.isel(run=0) if "run" in record.dims else record
+    if options.walked:
+        models = models or dict.fromkeys(layout(options.robot).servos, options.model)
+        identified, refusals = identify_walking(record, options.robot, models)
+    else:
+        identified, refusals = identify_servos(record, options.robot, models or None)
     columns = (
         ("torque_constant", "torque constant [N m/A]", 1.0), ("armature", "inertia [g m2]", 1e3),
         ("friction", "Coulomb [mN m]", 1e3), ("damping", "viscous [mN m s/rad]", 1e3), ("delay", "delay [ms]", 1e3),
@@ -188,6 +201,11 @@ def _identify_log(options: CalibrateOptions, output: Path) -> int:
             for name, servo in identified.items():
                 text = bam_parameters(servo, models.get(name, options.robot.name))
                 (draft / f"{name}.json").write_text(text, encoding="utf-8")
+    if options.walked:
+        print(
+            "inertia is counted with the makers' torque constants; torque constant and friction show in the air: "
+            "suchus calibrate log --held"
+        )
     print(f"written: {written}; intervals hold 95 %")
     return 0
 

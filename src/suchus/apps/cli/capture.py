@@ -29,13 +29,15 @@ from suchus.animals.capture import (
     to_gait,
     write_gait,
 )
+from suchus.animals.digitise import digitising_page
 from suchus.animals.forces import DRAWS, RUNGS, Rung, Unknown, played_forces, summary_lines, walked_forces
 from suchus.animals.overlay import overlay
+from suchus.animals.pictures import is_film
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
 from suchus.apps.cli.run import run_command_lines
 from suchus.apps.cli.terminal import working
-from suchus.apps.cli.word_checks import check_toml
+from suchus.apps.cli.word_checks import check_page, check_toml
 from suchus.core.files import check_replaceable, check_writable, write
 from suchus.core.files.store import packed
 from suchus.core.files.tables import COLUMNS, write_tables
@@ -67,6 +69,11 @@ class CaptureOptions:
     the water on a swim; tables in CSV and NetCDF with intervals, and a figure."""
     video: Path | None = None
     """The film itself, a video, a GIF or a folder of pictures; with --tables, skeleton and contacts are drawn on it."""
+    digitise: Path | None = None
+    """A page on which you click the points of a film; PATH is then the film: a video, a GIF or a folder of pictures.
+    The page saves the table that this command reads."""
+    every: int = 1
+    """The page of --digitise has every so many-th frame of the film [-]."""
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot for which the gait is made."""
     base: Gait | None = None
@@ -126,6 +133,13 @@ def capture(words: Sequence[str]) -> int:
     """
     description = "Read a gait from tracked keypoints of a walking body: a gait file to run, and its diagram."
     options = parse(CaptureOptions, "suchus capture", words, description)
+    if options.digitise:
+        return _write_digitising_page(options, options.digitise)
+    if is_film(options.tracks):
+        raise BadCommand(
+            f"{options.tracks} is a film, and this command reads tracked keypoints. --digitise points.html makes a "
+            "page on which you click them; DeepLabCut and SLEAP track them."
+        )
     output = options.out or (None if options.tables or options.forces else Path("captured.toml"))
     if options.video and not options.tables:
         raise BadCommand("--video is drawn into the folder of --tables; give that too, as in --tables measured.")
@@ -188,6 +202,24 @@ def capture(words: Sequence[str]) -> int:
                 *run_command_lines(robot, _robot_word(words), output),
             ]
     print(*lines, *(f"note: {note}" for note in notes), *messages, sep="\n")
+    return 0
+
+
+def _write_digitising_page(options: CaptureOptions, output: Path) -> int:
+    """Write the page on which the points of a film are clicked, say what to do with it, and return 0."""
+    unused = [f"--{name}" for name in ("out", "tables", "forces", "video") if getattr(options, name)]
+    if unused:
+        raise BadCommand(
+            f"{' and '.join(unused)} cannot stand beside --digitise: first click the points, then give the saved table."
+        )
+    check_page(output, "--digitise")
+    check_replaceable(output)
+    page = digitising_page(
+        options.tracks, rate=options.fps, start=options.start, end=options.end, every=options.every
+    )  # fmt: skip
+    write(output, page)
+    print(f"{output}, {output.stat().st_size / 1e6:.1f} MB: open it in a browser, click the points, save the table.")
+    print(f"then: suchus capture {options.tracks.stem}_points.csv --out my_gait.toml")
     return 0
 
 

@@ -134,11 +134,11 @@ _FIRST_EXPERIMENTS = (
     "swimming",
     "feedback",
     "joint_faults",
-    "gallop_limits",
-    "terrain",
     "bipedal_reach",
+    "terrain",
+    "turning",
     "swim_free",
-    "crawl_stability",
+    "sensitivity",
 )
 """Experiments that are started first: what most readers ask, so that its answer is there within a minute, and then the
 slowest, so that no process idles at the end."""

@@ -64,14 +64,18 @@ def check_named_once(positional: Sequence[str], options: Sequence[str], words: S
             raise BadCommand(f"{word} and {option} {value} both name the {option.strip('-')}: give one of the two.")
 
 
-def check_page(path: Path) -> None:
+def check_page(path: Path, option: str = "--out") -> None:
     """Refuse a page whose file name does not end in .html.
+
+    Args:
+        path: the page.
+        option: option that names it.
 
     Raises:
         BadCommand: the name of its file does not end in .html.
     """
     if path.suffix.lower() not in (".html", ".htm"):
-        raise BadCommand(f"the page would be {path}; say --out FILE.html.")
+        raise BadCommand(f"the page would be {path}; say {option} FILE.html.")
 
 
 def check_toml(path: Path, content: str) -> None:

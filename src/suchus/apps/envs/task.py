@@ -304,9 +304,9 @@ class Breaks:
         return tuple(self._fault(kind, joint) for kind in self.kinds for joint in self.candidate_servos(robot))
 
     def draw(self, random: np.random.Generator, robot: Robot) -> Fault:
-        """Draw the fault of one episode."""
+        """Draw the fault of one episode; spells of an intermittent fault come at other times in each episode."""
         if self.faults:
-            return self.faults[int(random.integers(len(self.faults)))]
+            return _with_drawn_spells(self.faults[int(random.integers(len(self.faults)))], random)
         joints = self.candidate_servos(robot)
         joint = joints[int(random.integers(len(joints)))]
         return self._fault(self.kinds[int(random.integers(len(self.kinds)))], joint)
@@ -315,6 +315,14 @@ class Breaks:
     def _fault(kind: str, joint: str) -> Fault:
         make: Callable[[str], Fault] = FAULTS[kind]
         return make(joint)
+
+
+def _with_drawn_spells(fault: Fault, random: np.random.Generator) -> Fault:
+    """Return a fault whose spells have a drawn seed, if it is intermittent."""
+    if fault.persistence.kind != "intermittent":
+        return fault
+    persistence = replace(fault.persistence, seed=int(random.integers(2**32)))
+    return replace(fault, persistence=persistence)  # type: ignore[type-var]  # every fault is a dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,6 +14,7 @@ from typing import Any
 
 from suchus.apps.report.rendering import number, quantity, render, tied
 from suchus.apps.report.result import Result, load_result
+from suchus.article.paper import AUTHORS, TITLE
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import read_text, write
 from suchus.experiments.catalog import EXPERIMENTS
@@ -33,6 +34,12 @@ MARKS = {
     "by construction": "□",
 }
 """Sign of each verdict, for those who do not see its colour."""
+ANSWER_SENTENCES = 2
+"""Sentences of an explanation that are the answer, beside the first figure; the others stand below the figures [-]."""
+ARTICLE_ROBOTS = ("", "caiman", "floating_caiman")
+"""Robots of the article, and none: pages of other robots name no part of the article."""
+DIGEST_LENGTH = 16
+"""Letters of the digest of the settings that pages show [-]."""
 MAX_ANSWER_MEASURES = 6
 """Numbers that stand below an answer [-]."""
 _LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
@@ -60,7 +67,8 @@ def write_outcome_page(folder: str | Path) -> Path:
 def render_outcome_page(result: Result) -> str:
     """Return the page of an outcome as text."""
     outcome = result.outcome
-    lead = answer(outcome["decides"])
+    sentences = _sentences(outcome["decides"])
+    robot = _setting_name(outcome, "robot")
     measures = {
         name: Measure(nan if measure["value"] is None else measure["value"], measure["unit"])
         for name, measure in outcome["measures"].items()
@@ -71,9 +79,11 @@ def render_outcome_page(result: Result) -> str:
         "result": result,
         "outcome": outcome,
         "on_shelf": outcome["experiment"] in EXPERIMENTS,
-        "lead": lead,
-        "more": outcome["decides"][len(lead) :].strip(),
-        "robot": _setting_name(outcome, "robot"),
+        "lead": answer(outcome["decides"]),
+        "more": sentences[ANSWER_SENTENCES:],
+        "robot": robot,
+        "is_article_robot": robot in ARTICLE_ROBOTS,
+        "citation": citation(outcome),
         "gait": _setting_name(outcome, "gait"),
         "verdicts": list(verdict_rows(result)),
         "carried": () if outcome.get("too_short") else answer_rows(outcome.get("answers", ()), measures),
@@ -100,7 +110,51 @@ def verdict_rows(result: Result) -> Iterator[dict[str, Any]]:
 
 def answer(decides: str) -> str:
     """Return the first two sentences of an outcome's explanation."""
-    return " ".join(re.split(r"(?<=[.!?])\s+(?=[A-Z])", decides)[:2])
+    return " ".join(_sentences(decides)[:ANSWER_SENTENCES])
+
+
+def _sentences(text: str) -> list[str]:
+    """Return the sentences of a text."""
+    return re.split(r"(?<=[.!?])\s+(?=[A-Z])", text.strip())
+
+
+def citation(outcome: Mapping[str, Any]) -> str:
+    """Return BibTeX entries for an outcome: of the software that made it, and of the article for the article's robot.
+
+    The first has the version, the commit where suchus ran from a checkout, and the digests of code and settings.
+    """
+    made_by, robot = outcome["provenance"], _setting_name(outcome, "robot")
+    versions = made_by.get("versions") or {}
+    origin = {
+        "commit": made_by.get("commit"),
+        "code": made_by.get("code"),
+        "settings": made_by["config_hash"][:DIGEST_LENGTH],
+    }
+    note = "; ".join(
+        [f"Experiment {outcome['experiment']}" + f", robot {robot}" * bool(robot)]
+        + [f"{name} {value}" for name, value in origin.items() if value]
+    )
+    fields = {
+        "author": "{The suchus developers}",
+        "title": f"suchus: {outcome['title']}",
+        "version": versions.get("suchus", ""),
+        "note": note,
+    }
+    entries = [_entry("software", f"suchus_{outcome['experiment']}", fields)]
+    if robot in ARTICLE_ROBOTS:
+        entries.append(_entry("article", "crocodile_robot", {"author": " and ".join(AUTHORS), "title": TITLE}))
+    return "\n\n".join(entries)
+
+
+def _entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
+    """Return an entry of BibTeX, empty fields left out."""
+    lines = [f"  {name} = {{{_tex(value)}}}" for name, value in fields.items() if value]
+    return f"@{kind}{{{key},\n" + ",\n".join(lines) + "\n}"
+
+
+def _tex(text: str) -> str:
+    """Return a text in which the signs that LaTeX would take for commands are escaped; braces stay."""
+    return re.sub(r"([&%$#_])", r"\\\1", text)
 
 
 def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:

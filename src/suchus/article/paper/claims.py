@@ -40,6 +40,20 @@ WATER = (
         "The tail's swinging motion resembles a sine wave",
     ),
     statement(
+        "swim_limbs_pressed",
+        "II.A",
+        "gain of speed with limbs along the body",
+        "A swimming crocodile presses its limbs to its sides: with limbs spread it is slower.",
+        "crocodiles tightly press their limbs against their body's sides",
+    ),
+    statement(
+        "swim_rapid_swings",
+        "II.A",
+        "gain of speed by faster swings",
+        "Faster swings of the tail make a crocodile faster.",
+        "crocodiles use rapid tail swings to accelerate",
+    ),
+    statement(
         "swim_body_wave",
         "IV.B, eq. (20)",
         "wave of the robot's midline in water",

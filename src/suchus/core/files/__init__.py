@@ -2,6 +2,7 @@
 
 from suchus.core.files.provenance import (
     code_digest,
+    commit_of,
     digest,
     has_same_provenance,
     package_digest,
@@ -20,6 +21,7 @@ __all__ = [
     "check_replaceable",
     "check_writable",
     "code_digest",
+    "commit_of",
     "digest",
     "has_same_provenance",
     "load",

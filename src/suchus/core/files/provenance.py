@@ -5,6 +5,7 @@ import hashlib
 import json
 import math
 import platform
+import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
@@ -34,9 +35,37 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
         "versions": versions(),
         "machine": machine.provenance(),
         "code": package_digest(),
+        "commit": _commit_of_package(),
         "seed": plain(settings.get("seed")),
         "seconds": round(seconds, 3),
     }
+
+
+def commit_of(root: Path, *folders: str) -> str:
+    """Return the abbreviated commit of a checkout, with ``+`` behind it where files differ; empty outside of git.
+
+    Args:
+        root: root of the checkout.
+        folders: folders below it whose files are compared with the commit.
+    """
+    if not (root / ".git").exists():
+        return ""
+    answers = []
+    for words in (("rev-parse", "--short=10", "HEAD"), ("status", "--porcelain", "--", *folders)):
+        try:
+            done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, check=False)
+        except OSError:  # there is no git on this machine
+            return ""
+        if done.returncode:
+            return ""
+        answers.append(done.stdout.strip())
+    return answers[0] + "+" * bool(answers[1])
+
+
+@cache
+def _commit_of_package() -> str:
+    """Return the commit of the checkout from which suchus runs, looked up once; empty for an installed package."""
+    return commit_of(_PACKAGE.parents[1], "src")
 
 
 def digest(settings: Mapping[str, Any]) -> str:

@@ -129,12 +129,13 @@ def _crawl_of(robot: Robot) -> Optimisation:
 
 
 def fault(robot: Robot | None = None) -> Optimisation:
-    """The farthest two cycles with each joint of a leg limp, a gait for each: what knowing a fault is worth."""
+    """The farthest two cycles intact, and with each joint of a leg limp: a gait for each fault, and one for none."""
     base = crawl(robot)
     run = base.run
     possible_joints = failing_joints(run.robot)
     joints = [joint for joint in possible_joints if joint in FAILED_JOINTS] or possible_joints
-    arms = tuple(
+    intact_arms = tuple(replace(arm, name=f"intact_{arm.name}") for arm in base.arms)
+    fault_arms = tuple(
         Arm(
             name=f"{joint}_{arm.name}",
             values={**arm.values, "faults": joint_failure(run.robot, run.gait, joint, "limp")},
@@ -145,12 +146,13 @@ def fault(robot: Robot | None = None) -> Optimisation:
     return replace(
         base,
         name=base.name.replace("crawl", "fault", 1),
-        arms=arms,
+        arms=(*intact_arms, *fault_arms),
         limits=tuple(limit for limit in base.limits if limit.name in ("torque", "clearance")),
-        evaluations=240,
+        evaluations=160,
         reasons=(
             "Each condition begins with the gait of the intact robot: the first number is that of a robot that does "
-            "not know its fault, the best that of one that does.",
+            "not know its fault, the best that of one that does. The search intact, with the same budget, shows what "
+            "of the difference is due to the search alone.",
             "A limp joint turns the robot, and a foot that is not lifted slips, so that neither is a limit here.",
             *base.reasons,
         ),

@@ -78,6 +78,8 @@ def outcome(spec: Optimisation, searches: Sequence[SearchResult]) -> dict[str, A
     """Return every number of a search as JSON holds it; what is not finite becomes null."""
     return {
         "optimisation": spec.name,
+        "robot": spec.run.robot.name,
+        "gait": spec.run.gait.name,
         "aims": {aim.name: {"unit": AIMS[aim.name].unit, "better": AIMS[aim.name].good} for aim in spec.aims},
         "reasons": list(spec.reasons),
         "seed": spec.seed,

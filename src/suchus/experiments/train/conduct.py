@@ -15,7 +15,7 @@ from suchus.core.progress import Progress, silent
 from suchus.core.writing import write
 from suchus.experiments.train.evaluate import draw_episodes, evaluate_policies, evaluate_table, with_network
 from suchus.experiments.train.judging import Judgement, judge
-from suchus.experiments.train.network_search import EPISODES, NetworkSearch
+from suchus.experiments.train.network_search import NetworkSearch
 from suchus.experiments.train.spec import FAULT_KINDS, Training
 from suchus.experiments.train.table_search import EXPLORATION, TableSearch
 from suchus.robot.control.policy import SUFFIX, Policy, policy_bytes, save_policy, with_training
@@ -267,7 +267,7 @@ def _train_network(
             break
         progress(f"network: generation {search.generation}", search.generation / target)
         weights = search.ask()
-        episodes = draw_episodes(training, table, EPISODES, search.generation)
+        episodes = draw_episodes(training, table, search.episode_count, search.generation)
         is_check = search.generation % _CHECK_INTERVAL == 0
 
         def evaluated(rows: np.ndarray, episodes: tuple = episodes, is_check: bool = is_check) -> xr.Dataset:  # type: ignore[type-arg]
@@ -285,7 +285,7 @@ def _train_network(
                 _keep(path, best)
             losses.append(check_loss)
         search.tell(result.loss.values)
-    if search.generation and search.generation % _CHECK_INTERVAL:
+    if search.generation:
         last = with_network(training, table, search.mean)
         loss = float(evaluate_policies(training, [last], check_episodes)[0])
         best = last if loss < min(losses) else best

@@ -164,7 +164,7 @@ class Coordinator:
     def rest(self) -> Float[np.ndarray, "run servo"]:
         """The posture of the first phases."""
         self._share(0, None, walking=False)
-        return self._posture(0)
+        return self._posture()
 
     def command(self, tick: int, sensed: Sensed | None) -> Command:
         """Return the servo targets after every controller has read the shared variables and its sensors.
@@ -182,7 +182,7 @@ class Coordinator:
         if sensed is not None and self._heading is not None:
             self._steering = self._heading.step(sensed, walking=walking)
         self._has_walked = self._has_walked or walking
-        targets = self._posture(tick)
+        targets = self._posture()
         if sensed is not None and walking:
             targets = self._spine.correct(targets, self._shared.trunk_bend + self._steering.trunk, sensed)
             targets = self._tail.correct(targets, sensed)
@@ -194,16 +194,18 @@ class Coordinator:
 
     def _share(self, tick: int, sensed: Sensed | None, *, walking: bool) -> None:
         """Let limbs, spine and tail write their shared variables, in this order."""
-        phases, clock = self._table.command(tick, None).phase, self._clock(tick)
+        self._planned = self._table.command(tick, None)
+        phases, clock = self._planned.phase, self._clock(tick)
         limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
         limb_state = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
         self._axis = self._gaits.axis_phase(limb_state.limb_phase, clock)
-        axis_state = self._tail.step(self._spine.step(limb_state, self._gaits, clock), self._gaits, clock)
+        spine_state = self._spine.step(limb_state, self._gaits, clock, self._axis)
+        axis_state = self._tail.step(spine_state, self._gaits, clock)
         self._shared = replace(axis_state, limb_phase=limbs.limb_phase)
 
-    def _posture(self, tick: int) -> Float[np.ndarray, "run servo"]:
+    def _posture(self) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; those of the table for runs without phase lead and steering."""
-        table = self._table.command(tick, None).targets
+        table = self._planned.targets
         is_adjusted = self._limbs.phase_lead.any(axis=1) | self._steering.is_active()
         if not is_adjusted.any():
             return table

@@ -24,6 +24,7 @@ from suchus.core.writing import write
 from suchus.robot.control.observation import observation_layout
 from suchus.robot.design import Robot, layout
 from suchus.robot.motion import Gait
+from suchus.robot.robots import ROBOTS
 
 SUFFIX = ".npz"
 """Ending of the file of a policy."""
@@ -237,6 +238,7 @@ class Policy:
             UnsuitedRobot: the robot has other servos, other limbs or another size.
         """
         place = layout(robot)
+        named_robot = robot.name if robot.name in ROBOTS else f"FILE.toml, the file of {robot.name}"
         for kind, trained, present in (
             ("limbs", self.limbs, place.limb_names),
             ("servos", self.servos, place.servos),
@@ -250,7 +252,7 @@ class Policy:
                 raise UnsuitedRobot(
                     f"policy {self.name!r} was trained for robot {self.robot!r} with {len(trained)} {kind}; robot "
                     f"{robot.name!r} has {len(present)} and {difference}: train one for it with "
-                    f"suchus train {self.task} --robot {robot.name}."
+                    f"suchus train {self.task} --robot {named_robot}."
                 )
         for quantity, unit, trained_size, size in (
             ("length", "m", self.length, robot.length),
@@ -260,7 +262,7 @@ class Policy:
                 raise UnsuitedRobot(
                     f"policy {self.name!r} was trained for a robot of {trained_size:.3g} {unit} {quantity}; robot "
                     f"{robot.name!r} has {size:.3g} {unit}, and {1 / MAX_SIZE_RATIO:g} to {MAX_SIZE_RATIO:g} times as "
-                    f"much is allowed: train one for it with suchus train {self.task} --robot {robot.name}."
+                    f"much is allowed: train one for it with suchus train {self.task} --robot {named_robot}."
                 )
 
 

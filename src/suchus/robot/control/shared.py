@@ -1,7 +1,7 @@
 """What the controllers of limbs, spine and tail exchange: five quantities, each with one owner."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -59,7 +59,13 @@ class Shared:
                     f"it may write {', '.join(v for v, o in OWNERS.items() if o == owner) or 'none'}."
                 )
             value.flags.writeable = False
-        return replace(self, **values)
+        return Shared(
+            limb_phase=values.get("limb_phase", self.limb_phase),
+            trunk_bend=values.get("trunk_bend", self.trunk_bend),
+            trunk_direction=values.get("trunk_direction", self.trunk_direction),
+            tail_bend=values.get("tail_bend", self.tail_bend),
+            tail_direction=values.get("tail_direction", self.tail_direction),
+        )
 
 
 def initial_shared(runs: int, limbs: int) -> Shared:

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from suchus.core.checks import Checks
 from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch
+from suchus.robot.motion.limbs import bounded
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,15 +59,21 @@ class SpineController:
         self._lacking = np.zeros(len(robots))
 
     @staticmethod
-    def step(shared: Shared, gaits: Batch, clock: Float[np.ndarray, " run"]) -> Shared:
+    def step(
+        shared: Shared,
+        gaits: Batch,
+        clock: Float[np.ndarray, " run"],
+        axis: Complex[np.ndarray, " run"] | None = None,
+    ) -> Shared:
         """Let the bend follow the limbs: each of four pulls with a quarter of the amplitude.
 
         Args:
             shared: what the limbs say.
             gaits: gaits of the runs.
             clock: since the walk began, for bodies without limbs [cycle].
+            axis: what ``gaits.axis_phase`` returns of them, if it is known already [-].
         """
-        axis = gaits.axis_phase(shared.limb_phase, clock)
+        axis = gaits.axis_phase(shared.limb_phase, clock) if axis is None else axis
         bend, direction = gaits.bend_of("trunk", axis), gaits.bend_of("trunk", 1j * axis)
         return shared.updated_by("spine", trunk_bend=bend, trunk_direction=direction)
 
@@ -88,7 +95,7 @@ class SpineController:
             return targets
         lacking = target_bend - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        commanded = np.clip(
+        commanded = bounded(
             targets[:, self._yaw] + self._share * self._lacking[:, None], self._lower_bound, self._upper_bound
         )
         corrected = targets.copy()

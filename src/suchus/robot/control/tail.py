@@ -11,6 +11,7 @@ from suchus.robot.control.sensed import Sensed, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch, Gait
+from suchus.robot.motion.limbs import bounded
 
 _BEND_TOLERANCE = 1e-9  # [rad]; smaller bends count as none
 
@@ -98,7 +99,7 @@ class TailController:
         if not self._is_active.any():
             return targets
         gives = self._step * finite(sensed.servo_torque[:, self._column])
-        self._pitch = np.clip(self._pitch - gives, self._lower_bound, self._upper_bound)
+        self._pitch = bounded(self._pitch - gives, self._lower_bound, self._upper_bound)
         corrected = targets.copy()
         corrected[:, self._column] = np.where(self._is_active, self._pitch, targets[:, self._column])
         return corrected

@@ -183,23 +183,56 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Grains:
+    """Dry grains in which feet, belly and tail sink, by resistive force theory; ``sim.hydro.plates`` has the law.
+
+    Grains hold by their strength, which grows with depth, and do not spring back. Level ground only; the grains are
+    deep, and do not remember where a foot has been.
+    """
+
+    strength: float = 0.254e6
+    """Vertical stress over depth on a level plate that moves down [N/m3]: 0.254e6 in loosely packed poppy seeds,
+    0.464e6 in closely packed ones (Li, Zhang and Goldman, Science 339, 1408, 2013, supplementary material)."""
+    creep_speed: float = 1e-3
+    """Speed of a part far below which the grains resist in proportion to it [m/s]: a resting foot sinks that slowly."""
+
+    def __post_init__(self) -> None:
+        with Checks("grains", self) as check:
+            check.number("strength", 1e3, 1e9, "N/m3")
+            check.number("creep_speed", 1e-9, 1.0, "m/s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Ground:
-    """Ground: even or with relief, possibly tilted."""
+    """Ground: even or with relief, possibly tilted, or of grains."""
 
     friction_scale: float = 1.0
-    """Factor on the friction coefficients of all the robot's surfaces [-], 0.01 to 10."""
+    """Factor on the friction coefficients of all the robot's surfaces, and on the strength of grains [-], 0.01 to
+    10."""
     uphill: float = 0.0
     """Slope along the walk, up positive [rad], -1 to 1."""
     sideways: float = 0.0
     """Slope across the walk, left side up positive [rad], -1 to 1."""
     relief: Relief | None = None
     """Step, stone or bumps on it; None where it is even."""
+    grains: Grains | None = None
+    """Grains in which the robot sinks; None where the ground is hard."""
 
     def __post_init__(self) -> None:
         with Checks("ground", self) as check:
             check.number("friction_scale", 0.01, 10.0, "")
             check.number("uphill", -1.0, 1.0, "rad")
             check.number("sideways", -1.0, 1.0, "rad")
+            check.that(
+                self.grains is None or (self.relief is None and self.uphill == 0.0 and self.sideways == 0.0),
+                "ground.grains are level and even, as the measurements behind them: leave out uphill, sideways and "
+                "relief, or grains",
+            )
+
+    @property
+    def strength(self) -> float:
+        """Strength of the grains with the factor on friction [N/m3]; 0 where the ground is hard."""
+        return 0.0 if self.grains is None else self.friction_scale * self.grains.strength
 
     def looks_like(self, ground: "Ground") -> bool:
         """Return whether another ground has the same slopes and relief, whatever its friction."""
@@ -232,6 +265,7 @@ ARENAS: Mapping[str, Ground] = MappingProxyType(
         "step": Ground(relief=Step(at=0.66, height=0.02)),
         "stone": Ground(relief=STONE),
         "bumps": Ground(relief=Bumps(height=0.03, correlation=0.06, start=BUMPS_START, seed=0)),
+        "sand": Ground(grains=Grains()),
     }
 )
 """Grounds by name; vary one with ``dataclasses.replace``."""

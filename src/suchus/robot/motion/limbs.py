@@ -113,21 +113,24 @@ class LimbMotion:
                 f"gait {self.gaits[0].name!r} has no path for the foot of {self.limb.name}: choose a gait of foot "
                 "paths."
             )
-        return np.stack(self._feet(self._numbers, _limbs_first(limbs, self.limb_indices), None))
+        forward, outward, down = self._feet(self._numbers, _limbs_first(limbs, self.limb_indices), None)
+        return np.stack([forward, np.broadcast_to(outward, forward.shape), down])
 
     def _feet(
         self, parameters: "_Path", phase: np.ndarray, steer: Steer | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how far feet are ahead of their hips, outside them and below them, each (limb, *batch) [m]."""
+        """Return how far feet are ahead of their hips, outside them and below them [m].
+
+        The first and the last have the shape (limb, *batch); the other broadcasts to it.
+        """
         forward, lifted = foot_path(phase, self._duty)
         stroke, lowering = parameters.stroke, np.zeros(())
         if steer is not None:
             stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.limb_indices)
             lowering = _of_limbs(steer.lowering, self.limb_indices)
-        forward_position = parameters.ahead + stroke * forward
         return (
-            forward_position,
-            np.broadcast_to(parameters.outward, forward_position.shape),
+            parameters.ahead + stroke * forward,
+            parameters.outward,
             parameters.down + lowering - parameters.lift * lifted,
         )
 
@@ -144,9 +147,10 @@ class LimbMotion:
             draw: draw feet into what limbs reach.
         """
         if parameters.leg is not None:
-            foot = np.stack([parameters.leg.hip_offset + outward, forward, down], axis=-1)
+            foot = np.empty((*forward.shape, 3))
+            foot[..., 0], foot[..., 1], foot[..., 2] = parameters.leg.hip_offset + outward, forward, down
             return _leg_angles(parameters.leg, parameters.side, foot, draw=draw)
-        foot = np.stack([forward, outward, -down], axis=-1)
+        foot = np.stack([forward, np.broadcast_to(outward, forward.shape), -down], axis=-1)
         limb = self.limb.girdle.limb
         if draw:
             min_reach, max_reach = limb_kinematics.reach(limb)
@@ -189,9 +193,14 @@ def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray
         duty: share of the cycle in which it stands [-].
     """
     cycle, swing = np.mod(phase, 1.0), 1.0 - duty
-    s = np.clip(cycle / swing, 0.0, 1.0)
-    forward = np.where(cycle < swing, -np.cos(np.pi * s), 1.0 - 2.0 * ((cycle - swing) / duty))
-    return forward, np.where(cycle < swing, np.sin(np.pi * s) ** 2, 0.0)
+    angle, swings = np.pi * bounded(cycle / swing, 0.0, 1.0), cycle < swing
+    forward = np.where(swings, -np.cos(angle), 1.0 - 2.0 * ((cycle - swing) / duty))
+    return forward, np.where(swings, np.sin(angle) ** 2, 0.0)
+
+
+def bounded(values: Any, lower_bound: Any, upper_bound: Any) -> np.ndarray:
+    """Return numbers within bounds, as ``numpy.clip`` does, in a third of its time for the few numbers of one run."""
+    return np.asarray(np.minimum(np.maximum(values, lower_bound), upper_bound))
 
 
 def girdles(place: Layout) -> list[list[int]]:
@@ -312,7 +321,8 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Cran
 
 def _limbs_first(values: Float[np.ndarray, "*batch limb"], limb_indices: Sequence[int]) -> np.ndarray:
     """Return the values of some limbs, shape (limb, *batch)."""
-    return np.stack([values[..., i] for i in limb_indices])
+    selected = values[..., list(limb_indices)]
+    return selected.transpose(selected.ndim - 1, *range(selected.ndim - 1))
 
 
 def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndarray:
@@ -355,6 +365,9 @@ def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]
         reach: nearest and farthest distance of the foot from the hip [m].
     """
     offset, (min_reach, max_reach) = foot - hip, reach
-    length = np.linalg.norm(offset, axis=-1, keepdims=True)
-    clipped = hip + offset * np.clip(length, min_reach, max_reach) / np.maximum(length, _REACH_MARGIN)
-    return np.asarray(np.where((length < min_reach) | (length > max_reach), clipped, foot))
+    length = np.sqrt(np.add.reduce(offset * offset, axis=-1, keepdims=True))
+    is_outside = (length < min_reach) | (length > max_reach)
+    if not is_outside.any():
+        return foot
+    clipped = hip + offset * bounded(length, min_reach, max_reach) / np.maximum(length, _REACH_MARGIN)
+    return np.asarray(np.where(is_outside, clipped, foot))

@@ -19,7 +19,7 @@ from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.limbs import LimbMotion, Steer, check_limbs, girdles, quarter
+from suchus.robot.motion.limbs import LimbMotion, Steer, bounded, check_limbs, girdles, quarter
 from suchus.robot.motion.parts import AxisRegion, FootPath
 
 START = CRAWL_START
@@ -57,7 +57,14 @@ class Movement:
         self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
         self._signs, self._phase_remainder = _references(gaits)
         servos, cables = self.yaw.hinges.servos, self.layout.cables
-        self._direct = [k for k, servo in enumerate(servos) if servo not in cables]
+        self._direct = np.array([k for k, servo in enumerate(servos) if servo not in cables], dtype=int)
+        self._direct_servos = np.array(servos, dtype=int)[self._direct]
+        self._direct_signs = np.array(self.yaw.hinges.signs)[self._direct]
+        self._direct_counts = self.yaw.hinge_counts[:, self._direct]
+        self._cables = [
+            (servo, self.layout.cable(servo), [k for k, hinge_servo in enumerate(servos) if hinge_servo == servo])
+            for servo in cables
+        ]
         self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.layout)]
         self._curves = [_Measured(self.layout, gaits, i) for i in range(len(gaits[0].curves))]
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
@@ -116,7 +123,7 @@ class Movement:
                 targets[..., limb.servos] = of_limb[..., limb.driven_hinges]
         self._bend(targets, axis, steer)
         self._curve(targets, limbs, axis)
-        return np.clip(targets, self._lower_bound, self._upper_bound) if steer is not None else targets
+        return bounded(targets, self._lower_bound, self._upper_bound) if steer is not None else targets
 
     def harmonics(self) -> Complex[np.ndarray, "run hinge"]:
         """Return h of the hinges that bend sideways, whose angles are a mean plus ``Re(h exp(2 pi i clock))`` [rad].
@@ -168,18 +175,16 @@ class Movement:
         size = None if steer is None else steer.size
         tail = 0.0 if steer is None else steer.tail
         if self.yaw.moves or np.any(tail):
-            hinges, bends, direct = self.yaw.hinges, self.yaw.bends(axis, size), self._direct
+            bends = self.yaw.bends(axis, size)
             if np.any(tail):
                 bends = bends + self._of_tail(tail)
-            servo_angles = np.array(hinges.signs)[direct] * bends[..., direct] / self.yaw.hinge_counts[:, direct]
-            targets[..., np.array(hinges.servos, dtype=int)[direct]] = servo_angles
-            for servo in self.layout.cables:
-                hinge_indices = [k for k, hinge_servo in enumerate(hinges.servos) if hinge_servo == servo]
-                bend_limit = self.layout.cable(servo).bend_limit
-                total_bend = hinges.signs[hinge_indices[0]] * self.yaw.total_bend(hinge_indices, bends)
+            servo_angles = self._direct_signs * bends[..., self._direct] / self._direct_counts
+            targets[..., self._direct_servos] = servo_angles
+            for servo, cable, hinge_indices in self._cables:
+                total_bend = self.yaw.hinges.signs[hinge_indices[0]] * self.yaw.total_bend(hinge_indices, bends)
                 if steer is not None:
-                    total_bend = np.clip(total_bend, -bend_limit, bend_limit)
-                targets[..., servo] = tail_kinematics.servo_angle(self.layout.cable(servo), total_bend)
+                    total_bend = bounded(total_bend, -cable.bend_limit, cable.bend_limit)
+                targets[..., servo] = tail_kinematics.servo_angle(cable, total_bend)
         if self.pitch.moves:
             targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.hinge_counts
         if steer is not None and self.layout.trunk_yaw:
@@ -246,6 +251,7 @@ class Batch:
         self.phases = np.array([gait.limb_phases for gait in gaits], dtype=float).reshape(len(gaits), -1)
         self.periods = np.array([gait.period for gait in gaits])
         self._servos = len(layout(robots[0]).servos)
+        self._swings: dict[AxisRegion, tuple[np.ndarray, np.ndarray]] = {}
 
     def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
         """Return the order parameter of each run's axis: of its limbs, or of its clock without limbs [-]."""
@@ -279,11 +285,14 @@ class Batch:
 
     def swing_and_offset(self, region: AxisRegion) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:
         """Return swing and steady bend of a part of each run: its bend is ``steady + Re(swing z)`` [rad]."""
-        swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
-        for movement, runs in self.groups:
-            yaw = movement.yaw
-            swing[runs], steady[runs] = yaw.swing_and_offset(yaw.hinges.indices_in(region))
-        return swing, steady
+        if region not in self._swings:
+            swing, steady = np.zeros(len(self.periods), dtype=complex), np.zeros(len(self.periods))
+            for movement, runs in self.groups:
+                yaw = movement.yaw
+                swing[runs], steady[runs] = yaw.swing_and_offset(yaw.hinges.indices_in(region))
+            swing.flags.writeable = steady.flags.writeable = False
+            self._swings[region] = swing, steady
+        return self._swings[region]
 
 
 def structure(gait: Gait) -> Any:

@@ -51,9 +51,19 @@ class Transition(NamedTuple):
         return np.asarray(previous + (1.0 - np.cos(np.pi * fraction)) / 2.0 * (self.targets[i] - previous))
 
 
+def transition_duration(robot: Robot) -> float:
+    """Return the duration of a change of gait [s]: 3.5 s for a body of a metre, less for a smaller one."""
+    return float(_key_times(robot)[-1])
+
+
+def _key_times(robot: Robot) -> Float[np.ndarray, " key"]:
+    """Return the times at which the postures of a change of gait are reached, since its beginning [s]."""
+    return np.asarray(gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES))
+
+
 @lru_cache(maxsize=64)
 def transition(robot: Robot, old_gait: Gait, new_gait: Gait) -> Transition:
-    """Return the course from one gait's posture to another's: 3.5 s for a body of a metre, less for a smaller one.
+    """Return the course from one gait's posture to another's, which takes ``transition_duration``.
 
     The robot stops and goes to a height at which both postures can stand. Then the limbs that swing in the first half
     of a cycle, LF and RH of four, are lifted, take their new posture and are put down; the others follow; then it goes
@@ -97,5 +107,6 @@ def transition(robot: Robot, old_gait: Gait, new_gait: Gait) -> Transition:
         next_mask = previous_mask | pair
         keys += [mixed(previous_mask, pair), mixed(next_mask, pair), mixed(next_mask, no_limb)]
     lower_bound, upper_bound = servo_ranges(robot).T
-    times = gravity_time(robot.length) / gravity_time(_LENGTH) * np.cumsum(_TIMES)
-    return Transition(times, np.clip(np.array([*keys, standing(new_gait, no_limb)]), lower_bound, upper_bound))
+    return Transition(
+        _key_times(robot), np.clip(np.array([*keys, standing(new_gait, no_limb)]), lower_bound, upper_bound)
+    )

@@ -7,6 +7,8 @@ while it runs. All spatial vectors are MuJoCo's: rotation first, about the centr
 import numpy as np
 from numba import carray
 
+from suchus.core.plate_table import PLATE_MAGIC
+from suchus.core.plate_table import SHAPE_COUNT as PLATE_SHAPE_COUNT
 from suchus.core.water_table import (
     BODY_COUNT,
     COLUMNS,
@@ -55,8 +57,10 @@ from suchus.sim.hydro.memory import (
     read_implicit_step,
     read_loads,
     read_motion,
+    read_plate_loads,
     read_water,
 )
+from suchus.sim.hydro.plates import resist_plates, room_for_loads
 from suchus.sim.hydro.vectors import (
     Vector,
     compile_inline,
@@ -97,6 +101,8 @@ def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
     numbers = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
     if magic == SHAPE_MAGIC:
         return _apply_to_shapes(model, data, offsets, numbers)
+    if magic == PLATE_MAGIC:
+        return _apply_to_plates(model, data, offsets, numbers)
     if model_words[offsets[memory.NUSER] // 8] < NUMBERS:
         return False
     if model_words[offsets[memory.NUSER] // 8] > NUMBERS:
@@ -185,6 +191,33 @@ def _apply_to_shapes(model: int, data: int, offsets: np.ndarray, numbers: np.nda
     _leave_loads(sums, loads, bodies, motion)
     _hand_over(sums, bodies, motion)
     _burden(sums, bodies, motion)
+    return True
+
+
+@compile_inline
+def _apply_to_plates(model: int, data: int, offsets: np.ndarray, numbers: np.ndarray) -> bool:
+    """Add the resistance of grains to the passive forces, and its damping to the mass matrix; return whether any acts.
+
+    The matrix grows by damping times time step, so that the resistance is that of the velocity at the end of the step.
+
+    Args:
+        model: address of a ``mjModel``.
+        data: address of its ``mjData``.
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        numbers: the table of plates.
+    """
+    motion, bodies = read_motion(model, data, offsets, 0), read_bodies(model, offsets)
+    loads = read_plate_loads(data, offsets, int(numbers[PLATE_SHAPE_COUNT]))
+    user, sums = motion.user, np.zeros((len(bodies.parent), SUMS))
+    write(user, FORCE, (0.0, 0.0, 0.0))
+    user[POWER] = 0.0
+    if not resist_plates(numbers, loads, sums, bodies, motion, read_implicit_step(model, offsets)):
+        return False
+    _hand_over(sums, bodies, motion)
+    force, power = three(user, FORCE), user[POWER]
+    _burden(sums, bodies, motion)
+    write(user, FORCE, force)  # no inertia of the grains, whose force it would be
+    user[POWER] = power
     return True
 
 
@@ -408,17 +441,19 @@ def _answer(inertia: np.ndarray, turns: Vector, moves: Vector) -> tuple[Vector, 
 
 @compile_kernel
 def has_misfit(model: int, offsets: np.ndarray) -> bool:
-    """Return whether a table of shapes was made for another number of bodies, or has no room for what it leaves.
+    """Return whether a table of shapes was made for another number of bodies, or one has no room for what it leaves.
 
     Args:
         model: address of a ``mjModel``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
     magic, start, size = find_table(model, offsets)
-    if magic != SHAPE_MAGIC:
+    if magic != SHAPE_MAGIC and magic != PLATE_MAGIC:
         return False
     words = carray(model, (4096,), np.int64)
     numbers = carray(pointer(words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
+    if magic == PLATE_MAGIC:
+        return words[offsets[memory.NUSER] // 8] < room_for_loads(numbers)
     bodies = words[offsets[memory.NBODY] // 8]
     room = words[offsets[memory.NUSER] // 8] - numbers[USERDATA_START]
     return bodies != numbers[BODY_COUNT] or room < NUMBERS + LOAD_WIDTH * bodies

@@ -8,6 +8,7 @@ from numba import carray, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
+from suchus.core.plate_table import LOAD_NUMBERS, PLATE_LOADS, PLATE_MAGIC
 from suchus.core.water_table import (
     ADDED_MASS_FACTOR,
     AIR_FRACTION,
@@ -126,8 +127,9 @@ def find_table(model: int, offsets: np.ndarray) -> tuple[float, int, int]:
     sizes = carray(pointer(words[offsets[_NUMERIC_SIZE] // 8]), (count,), np.int32)
     values = carray(pointer(words[offsets[NUMERIC] // 8]), (numbers,), np.float64)
     for i in range(count):
-        if sizes[i] >= HEADER and (values[starts[i]] == MAGIC or values[starts[i]] == SHAPE_MAGIC):
-            return values[starts[i]], starts[i], sizes[i]
+        first = values[starts[i]]
+        if sizes[i] >= HEADER and first in (MAGIC, SHAPE_MAGIC, PLATE_MAGIC):
+            return first, starts[i], sizes[i]
     return 0.0, 0, 0
 
 
@@ -204,6 +206,13 @@ def read_loads(model: int, data: int, offsets: np.ndarray, user_start: int) -> n
     return carray(
         pointer(state[offsets[_USER] // 8] + start_byte), (words[offsets[NBODY] // 8], LOAD_WIDTH), np.float64
     )
+
+
+@compile_inline
+def read_plate_loads(data: int, offsets: np.ndarray, shapes: int) -> np.ndarray:
+    """Return where the loads of the grains on some shapes are left, shape (shape, ``LOAD_NUMBERS``)."""
+    state = carray(data, (65536,), np.int64)
+    return carray(pointer(state[offsets[_USER] // 8] + 8 * PLATE_LOADS), (shapes, LOAD_NUMBERS), np.float64)
 
 
 @compile_inline

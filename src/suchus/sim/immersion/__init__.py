@@ -1,7 +1,8 @@
 """Water for any MuJoCo model, in MuJoCo's own step: ``wet``, seas and currents, coefficients of geoms.
 
 Knows no robot of suchus; the forces themselves are in ``sim.hydro``. ``wetting`` registers the plugin by which MuJoCo
-calls them, ``structs`` derives where MuJoCo's fields lie. Start reading with ``door.wet``.
+calls them, ``structs`` derives where MuJoCo's fields lie. ``grains`` lets dry grains act instead. Start reading with
+``door.wet``.
 """
 
 from suchus.sim.immersion.coefficients import GeomCoefficients

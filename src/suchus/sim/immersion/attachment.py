@@ -1,4 +1,4 @@
-"""A MuJoCo specification that carries a table of pieces as a custom number, and the plugin that lets water act."""
+"""A MuJoCo specification that carries a table as a custom number, and the plugin that lets water or grains act."""
 
 from typing import Any
 
@@ -31,11 +31,22 @@ def with_pieces(
         acting: whether the water acts in it; ``wetting.install`` goes before.
         extra_numbers: numbers for the added mass of water that is solved elsewhere.
     """
-    data = pack_table(table, length, max_pieces)
-    numeric = spec.add_numeric(name=NUMERIC, size=len(data))
-    numeric.data = data
-    spec.nuserdata = NUMBERS + extra_numbers
+    attach_table(spec, pack_table(table, length, max_pieces), NUMBERS + extra_numbers, acting=acting)
+    return spec.compile()
+
+
+def attach_table(spec: Any, numbers: np.ndarray, user_numbers: int, *, acting: bool) -> None:
+    """Let a ``mujoco.MjSpec`` carry a table.
+
+    Args:
+        spec: MuJoCo specification of any bodies.
+        numbers: the table as a row of numbers, shape (n,).
+        user_numbers: numbers of user data that the table needs [-].
+        acting: whether what it says acts; ``wetting.install`` goes before.
+    """
+    numeric = spec.add_numeric(name=NUMERIC, size=len(numbers))
+    numeric.data = numbers
+    spec.nuserdata = user_numbers
     if acting:
         spec.activate_plugin(PLUGIN)
         spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)
-    return spec.compile()

@@ -129,7 +129,7 @@ def wet(
     )  # fmt: skip
     _check_options(spec)
     wetting.install()
-    model = _with_full_matrix(spec)
+    model = with_full_matrix(spec)
     geoms = wet_geoms(model, coefficients, dry)
     table, triangles = shape_table(model, geoms, coefficients, viscosity, lift)
     start = int(model.nuserdata)
@@ -212,7 +212,7 @@ def _check_options(spec: Any) -> None:
         raise InvalidDesign("this model lets bodies sleep (option flag sleep), and water wakes none: disable the flag.")
 
 
-def _with_full_matrix(spec: Any) -> Any:
+def with_full_matrix(spec: Any) -> Any:
     """Compile a specification so that the mass matrix has room for the added mass of each body; return the model.
 
     MuJoCo keeps a diagonal matrix for a body whose frame is that of its mass, unless it has a child: such a body gets

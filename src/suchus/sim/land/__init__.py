@@ -1,6 +1,6 @@
 """Simulation on land: a batch of runs from the start; one crawl is a batch of one."""
 
-from suchus.robot.design.ground import ARENAS, Ground
+from suchus.robot.design.ground import ARENAS, Grains, Ground
 from suchus.sim.fault import Fault
 from suchus.sim.faults import Backlash, Deaf, Delayed, Frozen, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.sim.immersion.sea import Wave
@@ -30,6 +30,7 @@ __all__ = [
     "Delayed",
     "Fault",
     "Frozen",
+    "Grains",
     "Ground",
     "Lake",
     "Limp",

@@ -2,6 +2,7 @@
 
 import copy
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -13,17 +14,19 @@ from mujoco.batch import MODEL_FIELDS, Batch, SimulationError
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
 from suchus.robot.design.correction import SectionCorrection
-from suchus.robot.design.ground import Ground, Relief
+from suchus.robot.design.ground import Grains, Ground, Relief
 from suchus.robot.design.pieces import pieces
 from suchus.robot.motion import hip_height
 from suchus.sim.immersion import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.clear import check_clear
 from suchus.sim.land.corrected import correct
+from suchus.sim.land.grain_loads import GrainLoads
 from suchus.sim.land.lake import Waters, gravity, up_direction
 from suchus.sim.land.meter import ABSOLUTE_POWER, Meter, ServoLaws, servo_effort
 from suchus.sim.land.run import Afloat, Run
 from suchus.sim.model import SUPPLY, activations, compile_model, force_sensors, standing, supplies
+from suchus.sim.model.granular import granular_model
 from suchus.sim.model.wet import wet_model
 from suchus.sim.record import EFFORT
 
@@ -64,9 +67,12 @@ class SimulationBatch:
             fast: whether contacts are solved in less time and with less accuracy, see ``simulate``.
         """
         corrections = [None if run.lake is None else run.lake.correction for run in runs]
-        bodies = [(run.robot, run.ground.relief, correction) for run, correction in zip(runs, corrections, strict=True)]
+        bodies = [
+            (run.robot, run.ground.relief, correction, _grains(run))
+            for run, correction in zip(runs, corrections, strict=True)
+        ]
         has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
-        if has_water:
+        if has_water or runs[0].ground.grains is not None:
             wetting.install()
         max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
         is_solved = runs[0].solved_flow is not None
@@ -100,6 +106,9 @@ class SimulationBatch:
         self._lengths = self.physics.bind("actuator_length")
         self._shafts = self._lengths.copy()
         self._sensing = True
+        self._grain_loads = (
+            None if runs[0].ground.grains is None else GrainLoads(shared, runs[0].robot, self.physics.bind("userdata"))
+        )
         self.waters = Waters([run.lake for run in runs], [run.ground for run in runs], self.physics)
         forces = force_sensors(runs[0].robot)
         self._forces = slice(int(shared.sensor(forces[0]).adr[0]), int(shared.sensor(forces[-1]).adr[0]) + 3)
@@ -144,7 +153,7 @@ class SimulationBatch:
             run: run whose robot and ground it gets; its relief is not looked at.
         """
         correction = None if run.lake is None else run.lake.correction
-        model = self._compile((run.robot, run.ground.relief, correction))
+        model = self._compile((run.robot, run.ground.relief, correction, _grains(run)))
         self._body_fields |= {name for name in _ARRAY_FIELDS if not _are_equal(self.model, model, name)}
         for name in sorted(self._body_fields):
             self.field(name, sim)[:] = getattr(model, name)
@@ -314,6 +323,7 @@ class SimulationBatch:
             self._lengths[selection],
             0.0,
         )
+        self._mean[selection] = self._contact_forces()[selection]
         if self.waters:
             self.period_means[selection] = self.waters.acts()[selection]
         self.commit()
@@ -420,7 +430,7 @@ class SimulationBatch:
                 for sim in error.ids:
                     self._end(int(sim), time, self.physics.error(int(sim)))
                 going = self._going(selection)
-            self._sum += self._live_forces
+            self._sum += self._contact_forces()
             if meter is not None:
                 meter.record_step(call)
         if meter is not None:
@@ -465,7 +475,7 @@ class SimulationBatch:
                     going, is_all = self._going(selection), False
                 meter.record_step(period * steps + step)
                 if period == periods - 1:
-                    self._sum += self._live_forces
+                    self._sum += self._contact_forces()
             if not np.vdot(self.qvel, self.qvel) < _TOO_FAST**2:  # cheaper than the greatest speed, and not below it
                 self._end_fast_runs(selection, time)
                 going, is_all = self._going(selection), bool(self.alive.all())
@@ -474,6 +484,10 @@ class SimulationBatch:
         self.readings[:], self._shafts[:] = self.sensors, self._lengths
         np.divide(self._sum, steps, out=self._mean)
         return np.asarray(powers.sum(axis=2))
+
+    def _contact_forces(self) -> np.ndarray:
+        """Return the forces of the parts on the ground, hard or of grains, as they are now, shape (run, 3 forces)."""
+        return self._live_forces if self._grain_loads is None else self._live_forces + self._grain_loads.forces()
 
     def _end_fast_runs(self, selection: np.ndarray | None, time: float) -> None:
         """Stop the runs that move faster than anything on a robot does."""
@@ -532,13 +546,19 @@ class SimulationBatch:
             self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
 
 
+def _grains(run: Run) -> Grains | None:
+    """Return the grains of a run's ground, with its factor on their strength; None where it is hard."""
+    grains = run.ground.grains
+    return None if grains is None else replace(grains, strength=run.ground.strength)
+
+
 def _are_equal(first: Any, second: Any, name: str) -> bool:
     """Return whether a field of two models has the same numbers."""
     return np.array_equal(getattr(first, name), getattr(second, name))
 
 
 def _model(
-    body: tuple[Robot, Relief | None, SectionCorrection | None],
+    body: tuple[Robot, Relief | None, SectionCorrection | None, Grains | None],
     timestep: float,
     max_pieces: int,
     *,
@@ -550,14 +570,16 @@ def _model(
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
 
     Args:
-        body: robot, relief of its ground, and correction of its sections.
+        body: robot, relief of its ground, correction of its sections, and grains of its ground.
         timestep: time step of the physics [s].
         max_pieces: pieces that the table of the water has room for; 0 on dry land.
         is_solved: whether a flow solver computes the water.
         fast: whether contacts are solved in less time and with less accuracy.
     """
-    robot, relief, correction = body
-    if max_pieces:
+    robot, relief, correction, grains = body
+    if grains is not None:
+        base_model = granular_model(robot, timestep, grains)
+    elif max_pieces:
         base_model = wet_model(robot, timestep, relief, max_pieces, acting=True, is_solved=is_solved)
     else:
         base_model = compile_model(robot, timestep, relief)
@@ -565,7 +587,7 @@ def _model(
     if correction is not None:
         correct(model, correction)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
-    if fast:
+    if fast and grains is None:  # this solver knows the mass matrix without what grains add
         model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL
         model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
         model.opt.iterations = FAST_ITERATIONS

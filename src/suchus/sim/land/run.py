@@ -138,6 +138,10 @@ class Run:
                 self.lake is None or self.afloat is None,
                 "a run floats in a lake or in a vacuum without gravity, not in both: leave out lake or afloat",
             )
+            check.that(
+                self.ground.grains is None or (self.lake is None and self.afloat is None),
+                "a robot on grains is dry: leave out lake and afloat, or take hard ground",
+            )
             dry = self.lake is None and self.afloat is None and self.ground == Ground()
             check.that(
                 self.solved_flow is None or dry,

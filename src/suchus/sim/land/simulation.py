@@ -179,12 +179,12 @@ def _check(runs: Sequence[Run], duration: float, timestep: float, stride: int) -
 def _groups(runs: Sequence[Run]) -> list[list[int]]:
     """Return the indices of the runs that share a controller: those whose controls are of one class.
 
-    Runs on different types of relief, and runs in water and on dry land, have models of different sizes and run one
-    after another.
+    Runs on different types of relief, on hard ground and on grains, and in water and on dry land, have models of
+    different sizes and run one after another.
     """
     groups: dict[object, list[int]] = {}
     for i, run in enumerate(runs):
-        key = type(run.control), type(run.ground.relief), run.lake is None
+        key = type(run.control), type(run.ground.relief), run.ground.grains is None, run.lake is None
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 

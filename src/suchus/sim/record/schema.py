@@ -9,12 +9,13 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, SuchusError
-from suchus.robot.design.ground import Bumps, Ground, Step, Stone
+from suchus.robot.design.ground import Bumps, Grains, Ground, Step, Stone
 from suchus.robot.design.layout import LEGS
 
 _MAX_NUMBER, _UNIT = 1e9, 1e-3  # numbers of a record in SI units; how far a unit quaternion's length may be off
 _MAX_TIME, _MIN_SAMPLE_INTERVAL = 1e7, 1e-7  # [s]
 _TIME_TOLERANCE = 1e-9  # [s]
+_MAX_APPROACH = 3600.0  # [s]; time before zero in which a driven robot goes to its first posture
 _MIN_STEPS = 4  # between samples; where there are fewer, none is longer than all the rest
 _RUN_LIMITS = {
     "mass": (1e-9, 1e9),
@@ -220,7 +221,7 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
     time = record.time
     if time.dims != ("time",) or time.dtype.kind not in "fiu" or not _rising(time.values):
         raise IncompatibleRecord(f"{source} has times that do not rise.")
-    _check_times(time.values.astype(float), source)
+    _check_times(time.values.astype(float), source, max_approach=_MAX_APPROACH if "servo_heard" in record else 0.0)
     _check_runs(record, source)
     legs = [str(leg) for leg in record.leg.values.ravel()] if "leg" in record else []
     if not _in_pairs(legs):
@@ -230,18 +231,20 @@ def check_land(record: xr.Dataset, names: Sequence[str], source: str) -> None:
         )
 
 
-def _check_times(time: np.ndarray, source: str) -> None:
-    """Refuse times of samples that no run has: before zero, or with a gap longer than all the rest.
+def _check_times(time: np.ndarray, source: str, *, max_approach: float) -> None:
+    """Refuse times of samples that no run has: too long before zero, or with a gap longer than all the rest.
 
     Args:
         time: rising [s].
         source: name of the record in messages.
+        max_approach: time before zero in which a driven robot may go to its first posture; 0 for simulated runs [s].
     """
     steps = np.diff(time)
-    if time[0] < -_TIME_TOLERANCE or time[-1] > _MAX_TIME:
+    if time[0] < -max_approach - _TIME_TOLERANCE or time[-1] > _MAX_TIME:
+        earliest = -max_approach or 0.0  # no minus before zero
         raise IncompatibleRecord(
-            f"{source} has times from {time[0]:.4g} to {time[-1]:.4g} s; 0 to {_MAX_TIME:g} s is allowed: the unit or "
-            "the beginning is another."
+            f"{source} has times from {time[0]:.4g} to {time[-1]:.4g} s; {earliest:g} to {_MAX_TIME:g} s is allowed: "
+            "the unit or the beginning is another."
         )
     if len(steps) and np.median(steps) < _MIN_SAMPLE_INTERVAL:
         raise IncompatibleRecord(
@@ -352,6 +355,8 @@ def ground_text(ground: Ground | None) -> str:
     if ground is None:
         return ""
     text = {_GROUND_KEYS.get(name, name): value for name, value in asdict(ground).items()}
+    if ground.grains is None:  # as it was written before grounds had grains
+        del text["grains"]
     if ground.relief is not None:
         fields = asdict(ground.relief)
         if fields.get("scale") == 1.0:  # as it was written before bumps had a scale
@@ -375,7 +380,11 @@ def ground_of(record: xr.Dataset) -> Ground | None:
     try:
         names = {key: name for name, key in _GROUND_KEYS.items()}
         fields: dict[str, Any] = {names.get(key, key): value for key, value in json.loads(text).items()}
-        relief = fields.pop("relief")
-        return Ground(**fields, relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief))
+        relief, grains = fields.pop("relief"), fields.pop("grains", None)
+        return Ground(
+            **fields,
+            relief=None if relief is None else _RELIEFS[relief.pop("kind")](**relief),
+            grains=None if grains is None else Grains(**grains),
+        )
     except (ValueError, KeyError, TypeError, AttributeError, SuchusError) as error:
         raise IncompatibleRecord(f"the record holds no ground that this suchus knows: {text[:120]!r}.") from error

@@ -79,6 +79,8 @@ def swim_on_joints(
         the record of the robot, and ``weight`` is the robot's; further ``servo_power`` per cycle, ``tail_spread``, the
         largest amplitude of a cable's joint over their mean (NaN without a cable), and over all but the first cycle the
         greatest ``coupling_residual``, at the end ``energy_error`` and ``power_error``; see ``record.COUPLED``.
+        ``servo_torque`` has readings at instants, whose power is up to a third below ``servo_power``, the mean of all
+        physics steps.
 
     Raises:
         InvalidDesign, OutsideLimits, Diverged, UnreadableFile, Unwritable: see ``Swim`` and ``Swim.go``.

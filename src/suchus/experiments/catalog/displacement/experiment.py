@@ -33,7 +33,15 @@ from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.robot.motion import START, FootPath, Gait, suits
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import cost_of_transport, duty_factor, foot_clearance, heading_change, slip, two_feet_share
+from suchus.sim.metrics import (
+    cost_of_transport,
+    duty_factor,
+    electrical_cost_of_transport,
+    foot_clearance,
+    heading_change,
+    slip,
+    two_feet_share,
+)
 from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
@@ -231,7 +239,8 @@ class Displacement(TwoGroups):
     def _without_costs_at_rest(self, measures: Measures) -> Measures:
         """Return measures in which conditions that do not move have no cost of transport."""
         resting = tuple(
-            f"cost_of_transport_{name.removeprefix('forward_')}"
+            f"{cost}_{name.removeprefix('forward_')}"
+            for cost in ("cost_of_transport", "electrical_cost_of_transport")
             for name, measure in measures.items()
             if name.startswith("forward_") and abs(measure.value) < self._min_motion
         )
@@ -286,6 +295,7 @@ _UNITS = {
     "heading_drift": "rad",
     "slip": "-",
     "cost_of_transport": "-",
+    "electrical_cost_of_transport": "-",
     "hind_duty": "-",
     "hind_clearance": "m",
     "two_feet_share": "-",
@@ -302,6 +312,7 @@ def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
         "heading_drift": heading_change(record),
         "slip": slip(record),
         "cost_of_transport": cost_of_transport(record),
+        "electrical_cost_of_transport": electrical_cost_of_transport(record),
         "hind_duty": duty_factor(record).sel(hind).max("leg"),
         "hind_clearance": foot_clearance(record).sel(hind).min("leg"),
         "two_feet_share": two_feet_share(record),

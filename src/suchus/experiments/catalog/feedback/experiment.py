@@ -2,6 +2,8 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import reduce
+from itertools import pairwise
 from math import radians
 from typing import Any, ClassVar
 
@@ -9,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from suchus.core.checks import Checks
+from suchus.core.intervals import CONFIDENCE, look_confidence, planned_looks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
 from suchus.experiments.experiment import (
@@ -43,9 +46,10 @@ STARTS: Mapping[str, Coordinated] = {
 }
 """Controls of the random starts: each law alone, then all rules with noisy feet, with and without sharing."""
 _DISTANCE_LAWS = ("closed_noisy", "isolated_noisy")
-"""Laws whose displacement is measured; for the others only the phases are."""
+"""Laws whose displacement is measured, with as many starts as the claim on sharing needs; for the others only the
+phases are."""
 _JUDGED_LAWS = ("off", "cross_load", "wrong_sign")
-"""Laws whose fraction of starts that converge is judged; they get more starts than the others."""
+"""Laws whose fraction of starts that converge is judged; they get more and shorter starts than the others."""
 ARMS: Mapping[str, Coordinated] = {
     "open": Coordinated(limbs=LAWS["off"], **_LIMB_RULE_ONLY),
     "limbs": Coordinated(**_LIMB_RULE_ONLY),
@@ -105,9 +109,10 @@ class Feedback(Experiment):
     needs = ("limbs", "trunk")
     judged_settings = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_minima: ClassVar[Mapping[str, float]] = {
-        "starts": 16, "compared_starts": 6, "cycles": 12, "hold": 2.0, "after": 5,
+        "starts": 16, "compared_starts": 6, "sharing_starts": 12, "judged_cycles": 7, "cycles": 12, "hold": 2.0,
+        "after": 5,
     }  # fmt: skip
-    answer_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "cycles": 12}
+    answer_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "judged_cycles": 7, "cycles": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -116,10 +121,16 @@ class Feedback(Experiment):
     starts: int = 72
     """Number of random initial limb phases of each law whose converged fraction is judged [-]: if all of 72 converge,
     the exact interval begins above 95 %."""
-    compared_starts: int = 32
-    """Number of random initial limb phases of each other law [-]: the first of those of the judged laws."""
+    compared_starts: int = 16
+    """Number of random initial limb phases of each law that is only compared [-]: the first of the judged laws'."""
+    sharing_starts: int = 32
+    """Greatest number of random initial limb phases with and without sharing [-]. After half of them sampling ends if
+    the claim has a word by then."""
+    judged_cycles: int = 7
+    """Simulated duration of each start whose converged fraction is judged [cycle]. The slowest of 72 starts converges
+    after 3.5 cycles, and the wrong sign has as long."""
     cycles: int = 12
-    """Simulated duration of each start [cycle]."""
+    """Simulated duration of each other start [cycle]."""
     hold: float = 2.0
     """Duration for which the limbs must stay coordinated until the end [cycle]."""
     after: int = 5
@@ -142,6 +153,8 @@ class Feedback(Experiment):
         with Checks(self.name(), self) as check:
             check.whole("starts", 1, 1000)
             check.whole("compared_starts", 1, 1000)
+            check.whole("sharing_starts", 1, 1000)
+            check.whole("judged_cycles", 1, 1000)
             check.whole("cycles", 1, 1000)
             check.number("hold", 0.1, 1000.0, "cycle")
             check.whole("after", 1, 1000)
@@ -154,8 +167,9 @@ class Feedback(Experiment):
     def quick(self) -> "Feedback":
         """Two starts, few and short cycles."""
         return replace(
-            self, gait=replace(self.gait, period=2.0), starts=2, compared_starts=2, cycles=2, hold=0.5, after=1
-        )
+            self, gait=replace(self.gait, period=2.0), starts=2, compared_starts=2, sharing_starts=2, judged_cycles=2,
+            cycles=2, hold=0.5, after=1,
+        )  # fmt: skip
 
     def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
         """Return the robot's own gait, and a kick for each of its limbs.
@@ -191,7 +205,7 @@ class Feedback(Experiment):
         if not set(measure_names) <= _CLAIM_MEASURES:
             return super(Feedback, self).simulate_measures(measure_names, progress)
         starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
-        measures = start_measures(starts, self.gait, self.hold, self.cycles)
+        measures = start_measures(starts, self.gait, self.hold)
         if not set(measure_names) <= measures.keys():
             disturbed = self._disturbance_record(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
             measures |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
@@ -199,7 +213,7 @@ class Feedback(Experiment):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return how many starts converge, and the effect of each rule on each disturbance."""
-        return start_measures(record, self.gait, self.hold, self.cycles) | disturbed_measures(
+        return start_measures(record, self.gait, self.hold) | disturbed_measures(
             record, self.gait, self.hold, self.after
         )
 
@@ -239,38 +253,94 @@ class Feedback(Experiment):
         return START + self.gait.period
 
     def _start_record(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
-        """Simulate every random start under every law.
+        """Simulate the random starts of every law, those with and without sharing until their claim has a word.
 
         Args:
             progress: callback that gets the finished fraction.
-            laws: names of ``STARTS`` to simulate; the result is NaN for the others.
+            laws: names of ``STARTS`` to simulate, the judged laws among them; the result is NaN for the others.
 
         Returns:
             Limb phases (law, start, start_time, leg) [cycle] and displacements (law, start, start_time) [m], NaN where
-            a law has fewer starts than another. The second dataset is the record of the first start under the laws
-            ``cross_load`` and ``off``.
+            a law has fewer or shorter starts than another. The second dataset is the record of the first start under
+            the laws ``cross_load`` and ``off``.
+        """
+        judged_laws, sharing_laws = ([law for law in laws if law in group] for group in (_JUDGED_LAWS, _DISTANCE_LAWS))
+        compared_laws = [law for law in laws if law not in (*judged_laws, *sharing_laws)]
+        data, pair = self._simulate_starts(
+            judged_laws, range(self.starts), self.judged_cycles, staged(progress, "", 0.0, 0.4)
+        )
+        parts = [data]
+        if compared_laws:
+            starts = range(min(self.compared_starts, self.starts))
+            parts.append(self._simulate_starts(compared_laws, starts, self.cycles, staged(progress, "", 0.4, 0.6))[0])
+        if sharing_laws:
+            parts.append(self._sharing_record(sharing_laws, staged(progress, "", 0.6, 1.0)))
+        record = reduce(xr.Dataset.combine_first, parts).reindex(law=list(STARTS))
+        return record.drop_vars("start"), pair
+
+    def _sharing_record(self, laws: Sequence[str], progress: Any) -> xr.Dataset:
+        """Simulate random starts with and without sharing until the claim has a word, or there are no more.
+
+        Args:
+            laws: names of ``STARTS``.
+            progress: callback that gets the finished fraction.
+        """
+        looks = planned_looks(min(self.sharing_starts, self.starts))
+        parts: list[xr.Dataset] = []
+        for first, count in pairwise((0, *looks)):
+            stage = staged(progress, "", first / looks[-1], count / looks[-1])
+            parts.append(self._simulate_starts(laws, range(first, count), self.cycles, stage)[0])
+            record = xr.concat(parts, "start", join="exact")
+            record["sharing_looks"] = (
+                (),
+                len(looks),
+                {"units": "1", "long_name": "planned looks of sequential sampling"},
+            )
+            if self.has_word("shared_variables", sharing_measures(record, self.gait, self.hold)):
+                break
+        return record
+
+    def _simulate_starts(
+        self, laws: Sequence[str], starts: range, cycles: int, progress: Any
+    ) -> tuple[xr.Dataset, xr.Dataset]:
+        """Simulate some random starts of some laws.
+
+        The phases of a law that senses nothing follow without physics; its first start is simulated all the same.
+
+        Args:
+            laws: names of ``STARTS``.
+            starts: numbers of the starts.
+            cycles: simulated duration of each [cycle].
+            progress: callback that gets the finished fraction.
+
+        Returns:
+            Limb phases and displacements, see ``_start_record``, and the record of the first start under the laws
+            ``cross_load`` and ``off``, empty where they are not among the laws.
         """
         controls = {law: self._suited_control(STARTS[law]) for law in laws}
         open_loop_laws = [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
-        cells = [(law, i) for law in laws for i in range(self._starts_of(law)) if i == 0 or law not in open_loop_laws]
+        cells = [(law, i) for law in laws for i in starts if i == 0 or law not in open_loop_laws]
         runs = [
             self.tolerances.draw_run(
                 Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
             )
             for law, i in cells
         ]
-        duration = START + self.cycles * self.gait.period
         record = simulate(
-            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, effort=False, progress=progress
+            runs,
+            duration=START + cycles * self.gait.period,
+            timestep=coarse_step(self.robot),
+            sample_stride=10,
+            effort=False,
+            progress=progress,
         )
-        shape = (len(STARTS), self.starts, record.sizes["time"])
+        shape = (len(laws), len(starts), record.sizes["time"])
         phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
         for law in open_loop_laws:
-            phase[list(STARTS).index(law)] = self._phases(controls[law], record.time.values)
-        simulated_indices = tuple(np.array([(list(STARTS).index(law), i) for law, i in cells]).T)
-        phase[simulated_indices] = record.limb_phase.transpose("run", "time", "leg").values
-        distance[simulated_indices] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
-        pair = record.isel(run=[cells.index((law, 0)) for law in ("cross_load", "off")])
+            phase[laws.index(law)] = self._phases(controls[law], starts, record.time.values)
+        indices = tuple(np.array([(laws.index(law), i - starts.start) for law, i in cells]).T)
+        phase[indices] = record.limb_phase.transpose("run", "time", "leg").values
+        distance[indices] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
         dims, metre = ("law", "start", "start_time"), {"units": "m"}
         data = xr.Dataset(
             {
@@ -278,29 +348,28 @@ class Feedback(Experiment):
                 "start_way": (dims, distance, metre | {"long_name": "displacement of the centre of mass along x"}),
             },
             coords={
-                "law": list(STARTS),
+                "law": list(laws),
+                "start": list(starts),
                 "start_time": ("start_time", record.time.values, {"units": "s"}),
                 "leg": record.leg.values,
             },
         )
-        return data, pair
+        pair = [cells.index((law, 0)) for law in ("cross_load", "off") if (law, 0) in cells]
+        return data, record.isel(run=pair)
 
-    def _starts_of(self, law: str) -> int:
-        """Return the number of random starts of a law [-]."""
-        return self.starts if law in _JUDGED_LAWS else min(self.starts, self.compared_starts)
-
-    def _phases(self, control: Coordinated, time: np.ndarray) -> np.ndarray:
-        """Return the limb phases of every start under an open-loop law, shape (start, time, limb) [cycle].
+    def _phases(self, control: Coordinated, starts: range, time: np.ndarray) -> np.ndarray:
+        """Return the limb phases of some starts under an open-loop law, shape (start, time, limb) [cycle].
 
         No state of the body changes these phases, so no physics is simulated for them.
 
         Args:
             control: control whose law senses nothing.
+            starts: numbers of the starts.
             time: times at which the phases are returned [s].
         """
-        period, count = control_period(self.robot), self.starts
+        period, count = control_period(self.robot), len(starts)
         ticks = np.round(time / period).astype(int)
-        seeds = tuple(range(self.seed, self.seed + count))
+        seeds = tuple(self.seed + i for i in starts)
         runs = Runs((control,) * count, (self.robot,) * count, (self.gait,) * count, seeds, int(ticks[-1]) + 1)
         controller = control.start(runs, period)
         return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
@@ -412,48 +481,72 @@ class Feedback(Experiment):
         record = outcome.record
         error = phase_error(record.start_phase, self.gait).rename(start_time="time")
         cycles = (error.time - START) / self.gait.period
+        is_followed = record.start_phase.isel(start=0).sel(law=["off", "own_load", "cross_load"]).notnull()
+        is_followed = is_followed.all(("law", "leg")).values
         response = record.sel(time=slice(self._disturbance_time - 1e-9, None))
         return {
             "random_starts": draw_fans(error.assign_coords(time=cycles), PHASE_TOLERANCE),
-            "finding_the_gait": draw_onset(record.start_phase.assign_coords(start_time=cycles.values), self.gait),
+            "finding_the_gait": draw_onset(
+                record.start_phase.assign_coords(start_time=cycles.values).isel(start_time=is_followed), self.gait
+            ),
             "what_each_rule_gains": draw_gain(response.x.isel(time=-1) - response.x.isel(time=0)),
             "topology": draw_topology(topology(self.robot, self.gait)),
             "disturbed_tracks": draw_tracks(response, ("limp_yaw", "push", "side_slope")),
         }
 
 
-def start_measures(record: xr.Dataset, gait: Gait, hold: float, cycles: int) -> Measures:
+def start_measures(record: xr.Dataset, gait: Gait, hold: float) -> Measures:
     """Return how many starts converge, how fast, with which phase error, and the gain by sharing the phases.
 
     Args:
         record: record of the random starts.
         gait: gait that the robots were commanded.
         hold: duration for which a start must stay coordinated to count as converged [cycle].
-        cycles: simulated duration of each start [cycle].
     """
-    error = phase_error(record.start_phase, gait).rename(start_time="time")
-    period = gait.period
-    cycles_taken = cycles_until(error, period, start=START, hold=hold)
-    has_started = np.isfinite(record.start_phase.isel(start_time=0)).all("leg")
-    measures = Measures()
-    for law in record.law.values[has_started.any("start").values]:
-        convergence_cycles = cycles_taken.sel(law=law).values[has_started.sel(law=law).values]
-        measures |= estimated_fraction(f"converged_{law}", np.isfinite(convergence_cycles))
-        measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error.sel(law=law), hold * period).mean()), "-")
+    all_errors = phase_error(record.start_phase, gait).rename(start_time="time")
+    period, measures = gait.period, Measures()
+    for law in map(str, record.law.values):
+        error = all_errors.sel(law=law).dropna("start", how="all").dropna("time", how="all")
+        if not error.size:
+            continue
+        convergence_cycles = cycles_until(error, period, start=START, hold=hold)
+        measures |= estimated_fraction(
+            f"converged_{law}", np.isfinite(convergence_cycles), confidence=_confidence(record, law)
+        )
+        measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error, hold * period).mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
+            cycles = (float(error.time[-1]) - START) / period
             upper_quantile = np.quantile(np.minimum(convergence_cycles, cycles), 0.9)
             measures[f"cycles_to_converge_{law}"] = Measure(float(upper_quantile), "-")
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
     measures["converged_closed"] = measures["converged_cross_load"]
     measures["converged_open"] = measures["converged_off"]
-    distances = _last_seconds(record.start_way.rename(start_time="time"), hold * period)
+    return measures | sharing_measures(record, gait, hold)
+
+
+def _confidence(record: xr.Dataset, law: str) -> float:
+    """Return the confidence of the intervals of a law [-], greater where sampling could end early."""
+    return look_confidence(int(record.sharing_looks)) if law in _DISTANCE_LAWS else CONFIDENCE
+
+
+def sharing_measures(record: xr.Dataset, gait: Gait, hold: float) -> Measures:
+    """Return the displacement in a cycle with shared phases and without, and the gain by sharing, of the same starts.
+
+    Args:
+        record: record of the random starts with and without sharing.
+        gait: gait that the robots were commanded.
+        hold: duration at the end of the starts that is measured [cycle].
+    """
+    distances = record.start_way.sel(law=list(_DISTANCE_LAWS)).rename(start_time="time").dropna("time", how="all")
+    has_started = distances.notnull().any("time").all("law").values
+    distances = _last_seconds(distances.isel(start=has_started), hold * gait.period)
     distances = (distances.isel(time=-1) - distances.isel(time=0)) / hold
-    distances = distances.isel(start=has_started.sel(law=list(_DISTANCE_LAWS)).all("law").values)
+    measures, confidence = Measures(), look_confidence(int(record.sharing_looks))
     for name, law in zip(("shared", "isolated"), _DISTANCE_LAWS, strict=True):
-        measures |= estimated(f"way_{name}", distances.sel(law=law), "m")
+        measures |= estimated(f"way_{name}", distances.sel(law=law), "m", confidence=confidence)
         measures[f"way_{name}_least"] = Measure(float(distances.sel(law=law).min()), "m")
     shared, isolated = (distances.sel(law=law, drop=True) for law in _DISTANCE_LAWS)
-    return measures | estimated("way_gain_shared", shared - isolated, "m")
+    return measures | estimated("way_gain_shared", shared - isolated, "m", confidence=confidence)
 
 
 def disturbed_measures(record: xr.Dataset, gait: Gait, hold: float, cycles_after: int) -> Measures:

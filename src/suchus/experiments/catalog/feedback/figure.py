@@ -73,10 +73,10 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
     with styled():
         figure, axes = panels(2, 3, width=10.5, height=5.6, sharex=True, sharey=True)
         for ax, (law, (label, colour)) in zip(axes.flat, _LAWS.items(), strict=True):
-            errors = error.sel(law=law).transpose("time", "start")
+            errors = error.sel(law=law).transpose("time", "start").dropna("time", how="all").dropna("start", how="all")
             ax.axhspan(0.0, tolerance, color=COLOURS["grid"], linewidth=0)
-            ax.plot(error.time, errors, color=colour, linewidth=0.8, alpha=0.5, label="_each start")
-            ax.plot(error.time, errors.median("start"), color="black", linewidth=2.0, label="_median of the starts")
+            ax.plot(errors.time, errors, color=colour, linewidth=0.8, alpha=0.5, label="_each start")
+            ax.plot(errors.time, errors.median("start"), color="black", linewidth=2.0, label="_median of the starts")
             ax.set_title(label)
             ax.set_xlim(0.0, float(error.time[-1]))
             ax.set_ylim(0.0, 0.52)
@@ -86,9 +86,9 @@ def draw_fans(error: xr.DataArray, tolerance: float) -> Figure:
             ax.set_ylabel("phase error [cycle]")
     return captioned(
         figure,
-        "How far the limbs are from the gait, from random starts under each law, with more starts where the fraction "
-        "that converges is judged; the black line is the median, the grey band counts as coordinated. Noisy feet: 30 % "
-        "noise on every load, spine and tail rules on.",
+        "How far the limbs are from the gait, from random starts under each law, with more and shorter starts where "
+        "the fraction that converges is judged; the black line is the median, the grey band counts as coordinated. "
+        "Noisy feet: 30 % noise on every load, spine and tail rules on.",
     )
 
 

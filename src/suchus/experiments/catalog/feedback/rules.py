@@ -67,7 +67,10 @@ RULES = (
 )
 
 VARIED = Variation(
-    claims=("feedback_rules", "shared_variables"), designs=("robot", "gait"), settings={"starts": 16}, samples=16
+    claims=("feedback_rules", "shared_variables"),
+    designs=("robot", "gait"),
+    settings={"starts": 16, "judged_cycles": 12},
+    samples=16,
 )
 
 _RULES_EXAMPLE = {

@@ -45,8 +45,10 @@ class GallopLimits(Experiment):
     """Bounding gaits with servos of growing speed and torque, and the fastest trots and walks with the same servos.
 
     Every servo has a straight torque-speed line. Bounds and trots were found by a search with the cross-entropy method
-    over twelve parameters, for leg servos of 3 N m and one no-load speed. On the map all servos get the same commands;
-    the fastest gait of each kind counts. A robot flies while no part of it touches the ground.
+    over twelve parameters, for leg servos of 3 N m and one no-load speed. On the map all servos get the same commands,
+    and the robot as designed walks in each gait with each servo; the fastest gait of each kind counts. The fastest
+    bound and the fastest trot or walk with servos like the robot's own are then walked by robots that are built of the
+    design, which alone are judged. A robot flies while no part of it touches the ground.
     """
 
     title = "Could the robot gallop, and which servos would it take?"
@@ -78,11 +80,8 @@ class GallopLimits(Experiment):
     others_over_legs: float = 2.5 / 3.0
     """Torque limit of all other servos over the legs' [-]; so in the search for bounds and trots."""
     repeats: int = 6
-    """Number of robots built of each design with servos like the robot's own or lesser ones [-]; their median and its
-    interval are judged, for which at least six are needed."""
-    map_repeats: int = 3
-    """Number of robots built of each other design on the map [-]; their median counts, so a gait must tolerate their
-    errors."""
+    """Number of robots built of the design with servos like its own [-]; their median and its interval are judged, for
+    which at least six are needed."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots built of the design, and of their grounds."""
     seconds: float = 3.0
@@ -100,64 +99,32 @@ class GallopLimits(Experiment):
             check.number("seconds", 0.05, 60.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.whole("repeats", 1, 1000)
-            check.whole("map_repeats", 1, 1000)
             for name in ("bounds", "walks"):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
 
     def quick(self) -> "GallopLimits":
-        """Return two speeds, one torque, one robot of each design, half a second, a coarse step."""
-        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, map_repeats=1, seconds=0.5, timestep=0.005)
+        """Return two speeds, one torque, one robot as built, half a second, a coarse step."""
+        return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
-        """Simulate every gait with every servo on the map."""
+        """Simulate every gait with every servo on the map, then robots as built with servos like the robot's own."""
         searched = [("bound", candidate) for candidate in self.bounds] + [
             ("trot", candidate) for candidate in self.trots
         ]
         kinds = [*(kind for kind, _ in searched), *("walk" for _ in self.walks)]
         gaits: list[Gait] = [*(candidate.gait for _, candidate in searched), *self.walks]
         cells = [(torque, speed) for torque in self.torques for speed in self.speeds]
-        own_cell = cells[self._own_cell(cells)]
-        counts = [
-            self.repeats if torque <= own_cell[0] and speed <= own_cell[1] else self.map_repeats
-            for torque, speed in cells
+        runs = [
+            Run(robot=self._robot_with_servos(*cell), gait=gait, label=gait.name) for cell in cells for gait in gaits
         ]
-        runs: list[Run] = []
-        for (torque, speed), count in zip(cells, counts, strict=True):
-            robot = self._robot_with_servos(torque, speed)
-            designed = [Run(robot=robot, gait=gait, label=gait.name) for gait in gaits]
-            runs += self.tolerances.repeats(designed, count)
-        duration = round(START + _RUN_UP + self.seconds, 2)
-        record = simulate(
-            runs, duration=duration, timestep=self.timestep, progress=staged(progress, "bound and walk", 0.0, 1.0)
-        )
-        shape = (len(self.torques), len(self.speeds), len(gaits), max(counts))
-        window = time_window(record, START + _RUN_UP)
-        joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
-        quantities = {
-            "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
-            "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
-            "joint_speed": (joint_speed, "rad/s", "99th percentile of the fastest leg joint"),
-        }
-        values = {
-            name: (_of_robots(array.values, np.repeat(counts, len(gaits))).reshape(shape), unit, long_name)
-            for name, (array, unit, long_name) in quantities.items()
-        }
+        record = self._walk(runs, staged(progress, "map", 0.0, 0.9))
+        shape = (len(self.torques), len(self.speeds), len(gaits))
         data = xr.Dataset(
             {
-                name: (
-                    ("torque", "servo_speed", "gait"),
-                    np.nanmedian(of_robots, axis=-1),
-                    {"units": unit, "long_name": long_name},
-                )
-                for name, (of_robots, unit, long_name) in values.items()
+                name: (("torque", "servo_speed", "gait"), values.values.reshape(shape), values.attrs)
+                for name, values in self._quantities(record).items()
             }
-            | {
-                "built_speed": (
-                    ("torque", "servo_speed", "gait", "repeat"),
-                    values["speed"][0],
-                    {"units": "m/s", "long_name": "speed forward of each robot that is built; NaN where none is"},
-                )
-            },
+            | {"map_run": (("torque", "servo_speed", "gait"), np.arange(len(runs)).reshape(shape))},
             coords={
                 "torque": ("torque", list(self.torques), {"units": "N m", "long_name": "torque limit"}),
                 "servo_speed": ("servo_speed", list(self.speeds), {"units": "rad/s", "long_name": "no-load speed"}),
@@ -166,7 +133,38 @@ class GallopLimits(Experiment):
             },
             attrs={"own_torque": self._leg_servo.torque, "own_speed": self._leg_servo.speed},
         )
-        return SimulationResult(record=data, replays=self._replays(record, cells, counts, data))
+        own_servo = dict(zip(("torque", "servo_speed"), cells[self._own_cell(cells)], strict=True))
+        fastest = [int(fastest_gaits(data, *group).sel(own_servo).map_run) for group in COMPARED.values()]
+        built = self._walk(
+            self.tolerances.repeats([runs[run] for run in fastest], self.repeats),
+            staged(progress, "as built", 0.9, 1.0),
+        )
+        for name, values in self._quantities(built).items():
+            of_robots = values.values.reshape(len(COMPARED), self.repeats)
+            attrs = values.attrs | {"long_name": f"{values.attrs['long_name']}, of each robot that is built"}
+            data[f"built_{name}"] = (("compared", "repeat"), of_robots, attrs)
+        data = data.assign_coords(compared=list(COMPARED))
+        replays = self._replays(record, cells, data)
+        return SimulationResult(record=data.drop_vars("map_run"), replays=replays)
+
+    def _walk(self, runs: Sequence[Run], progress: Progress) -> xr.Dataset:
+        """Return the record of runs over the measured duration and the second before it."""
+        duration = round(START + _RUN_UP + self.seconds, 2)
+        return simulate(runs, duration=duration, timestep=self.timestep, effort=False, progress=progress)
+
+    def _quantities(self, record: xr.Dataset) -> dict[str, xr.DataArray]:
+        """Return speed forward [m/s], share of flight [-] and speed of the leg joints [rad/s] of each run."""
+        window = time_window(record, START + _RUN_UP)
+        joint_speed = abs(window.servo_velocity.isel(servo=self._leg_servo_indices)).quantile(0.99, "time").max("servo")
+        quantities = {
+            "speed": (displacement(record, START + _RUN_UP).sel(xyz="x") / self.seconds, "m/s", "speed forward"),
+            "flight": (flight_share(record, START + _RUN_UP), "1", "share of the time in which nothing touches"),
+            "joint_speed": (joint_speed, "rad/s", "99th percentile of the fastest leg joint"),
+        }
+        return {
+            name: values.assign_attrs(units=unit, long_name=long_name)
+            for name, (values, unit, long_name) in quantities.items()
+        }
 
     def _own_cell(self, cells: Sequence[tuple[float, float]]) -> int:
         """Return the index of the cell whose servos are most like the robot's own.
@@ -215,33 +213,25 @@ class GallopLimits(Experiment):
         )
 
     def _replays(
-        self,
-        record: xr.Dataset,
-        cells: Sequence[tuple[float, float]],
-        counts: Sequence[int],
-        map_of_gaits: xr.Dataset,
+        self, record: xr.Dataset, cells: Sequence[tuple[float, float]], map_of_gaits: xr.Dataset
     ) -> Mapping[str, Replay]:
         """Return the replay of the fastest bound of all, and of the fastest with servos most like the robot's own.
 
         Args:
-            record: record of all runs.
+            record: record of all runs of the map.
             cells: torque limit [N m] and no-load speed [rad/s] of each cell of the map.
-            counts: number of robots of each gait in each cell [-].
-            map_of_gaits: ``speed`` (torque, servo_speed, gait) [m/s], with the ``kind`` of each gait.
+            map_of_gaits: ``speed`` (torque, servo_speed, gait) [m/s] and ``map_run``, with the ``kind`` of each gait.
         """
-        bound = map_of_gaits.speed.isel(gait=map_of_gaits.kind.values == "bound").values.reshape(len(cells), -1)
-        best_cell = int(np.argmax(bound.max(1)))
-        nearest_cell = self._own_cell(cells)
-        servo_texts = ["{:g} N m and {:g} rad/s".format(*cells[i]) for i in (best_cell, nearest_cell)]
-        count_of_gaits = map_of_gaits.sizes["gait"]
-        runs = [
-            sum(counts[:i]) * count_of_gaits + int(np.argmax(bound[i])) * counts[i] for i in (best_cell, nearest_cell)
-        ]
+        bound = map_of_gaits.isel(gait=map_of_gaits.kind.values == "bound")
+        speeds, runs = (bound[name].values.reshape(len(cells), -1) for name in ("speed", "map_run"))
+        shown = [int(np.argmax(speeds.max(1))), self._own_cell(cells)]
+        servo_texts = ["{:g} N m and {:g} rad/s".format(*cells[cell]) for cell in shown]
+        best_run, own_run = (int(runs[cell, np.argmax(speeds[cell])]) for cell in shown)
         return replayed(
             "gallop_replay.html",
-            record.isel(run=runs[0]),
+            record.isel(run=best_run),
             self.robot,
-            ghost=record.isel(run=runs[1]),
+            ghost=record.isel(run=own_run),
             labels=tuple(servo_texts),
             title="Could it gallop?",
             caption=f"Bounds with servos of {servo_texts[0]}, and, half transparent, of {servo_texts[1]}.",
@@ -251,24 +241,25 @@ class GallopLimits(Experiment):
         """Return the speed of a bound with the robot's servos and with better ones, and the speed a gallop needs."""
         bound, walks = fastest_gaits(record, "bound"), fastest_gaits(record, "trot", "walk")
         design_servo = {"torque": record.attrs["own_torque"], "servo_speed": record.attrs["own_speed"]}
-        own_bound, own_walk = (kind.sel(design_servo, method="nearest") for kind in (bound, walks))
+        own_cell = record.speed.sel(design_servo, method="nearest")
         gallops = (bound.speed > walks.speed) & (bound.flight >= MIN_FLIGHT_FRACTION)
         pays = gallops.sel(torque=design_servo["torque"], method="nearest")
         best = bound.isel(bound.speed.argmax(["torque", "servo_speed"]))
-        ratio = (own_bound.built_speed / own_walk.built_speed).dropna("repeat")
+        built_bound, built_walk = (record.sel(compared=name) for name in COMPARED)
+        ratio = built_bound.built_speed / built_walk.built_speed
         return estimated("bound_over_walk", ratio, "-") | Measures(
             {
-                "speed_bound": Measure(float(own_bound.speed), "m/s"),
-                "flight_bound": Measure(float(own_bound.flight), "-"),
-                "joint_speed_bound": Measure(float(own_bound.joint_speed), "rad/s"),
-                "speed_walk": Measure(float(own_walk.speed), "m/s"),
+                "speed_bound": Measure(float(built_bound.built_speed.median()), "m/s"),
+                "flight_bound": Measure(float(built_bound.built_flight.median()), "-"),
+                "joint_speed_bound": Measure(float(built_bound.built_joint_speed.median()), "rad/s"),
+                "speed_walk": Measure(float(built_walk.built_speed.median()), "m/s"),
                 "speed_bound_best": Measure(float(best.speed), "m/s"),
                 "flight_bound_best": Measure(float(best.flight), "-"),
                 "joint_speed_best": Measure(float(best.joint_speed), "rad/s"),
                 "torque_best": Measure(float(best.torque), "N m"),
                 "servo_speed_best": Measure(float(best.servo_speed), "rad/s"),
-                "servo_speed_own": Measure(float(own_bound.servo_speed), "rad/s"),
-                "torque_own": Measure(float(own_bound.torque), "N m"),
+                "servo_speed_own": Measure(float(own_cell.servo_speed), "rad/s"),
+                "torque_own": Measure(float(own_cell.torque), "N m"),
                 "servo_speed_needed": Measure(_min_paying_speed(pays.servo_speed.values, pays.values), "rad/s"),
                 "gallops_share": Measure(float(gallops.mean()), "-"),
             }
@@ -281,23 +272,13 @@ class GallopLimits(Experiment):
             draw_gallop_limits(bound, walks, outcome.record.attrs["own_speed"]),
             "The fastest bounding gait with servos of growing no-load speed and torque (colours). Left: its speed; "
             "dashed: the fastest trot or walk. Right: the share of the time in which nothing touches the ground. "
-            "Each point is what was simulated with that servo. The grey line is the robot's own servo.",
+            "Each point is what the robot as designed did with that servo. The grey line is the robot's own servo.",
         )
         return {"gallop_limits": figure}
 
 
-def _of_robots(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """Return values of runs as (case, robot), NaN where a case has fewer robots than another.
-
-    Args:
-        values: value of each run, case by case, shape (run,).
-        counts: number of robots of each case, shape (case,).
-    """
-    table = np.full((len(counts), int(counts.max())), np.nan)
-    table[np.arange(table.shape[1]) < counts[:, None]] = values
-    return table
-
-
+COMPARED: Mapping[str, tuple[str, ...]] = {"bound": ("bound",), "trot or walk": ("trot", "walk")}
+"""Kinds of gaits whose fastest with servos like the robot's own are walked by robots as built, by name."""
 MIN_FLIGHT_FRACTION = 0.1
 """Flight fraction from which a bound counts as a gallop [-]; with less it is a walk that stumbles."""
 
@@ -316,8 +297,6 @@ def simulated_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
 def fastest_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
     """Return speed [m/s], flight [-] and joint speed [rad/s] of the fastest gait of some kinds with every servo.
 
-    ``built_speed`` holds the speeds of the robots as built; their median is the speed.
-
     A better servo can be limited to the torque and speed of a weaker or slower one. A gait that is fast with the lesser
     servo therefore counts with all better ones too. Otherwise a bound would be compared with walks that were not
     searched for its servo.
@@ -333,14 +312,9 @@ def fastest_gaits(record: xr.Dataset, *kinds: str) -> xr.Dataset:
         for i in range(torque_count)
         for j in range(speed_count)
     ]
+    names = [name for name in ("speed", "flight", "joint_speed", "map_run") if name in best.variables]
     return best.assign(
-        {
-            name: (
-                best[name].dims,
-                best[name].values.reshape(torque_count * speed_count, -1)[best_cells].reshape(best[name].shape),
-            )
-            for name in ("speed", "built_speed", "flight", "joint_speed")
-        }
+        {name: (best[name].dims, best[name].values.ravel()[best_cells].reshape(best[name].shape)) for name in names}
     )
 
 

@@ -117,7 +117,7 @@ class JointFaults(TwoGroups):
     """
     legs: Legs = "one"
     """Whether the judged fault is in one leg or in both legs of a girdle; one, because the text names single joints."""
-    repeats: int = 8
+    repeats: int = 6
     """Number of robots built of the design for each condition and fault [-]; six at least give a median an interval."""
     timestep: float = 0.005
     """Time step of the physics [s]. A step of 2 ms changes no median by more than 3 percentage points. A step of 10 ms

@@ -40,14 +40,14 @@ from suchus.sim.metrics import cost_of_transport
 
 STILL_AXIS = "still_axis"
 """Arm of the policy that may not bend spine and tail."""
-ARMS = ("policy", "fault_policy", STILL_AXIS, "open_loop", "feedback")
+ARMS = ("policy", "fault_policy", "untold_policy", STILL_AXIS, "open_loop", "feedback")
 """Controls that are compared."""
 UNDISTURBED = "undisturbed"
 """Condition of a walk without a disturbance."""
 DISTURBANCES = ("heavier", "latency", "slippery", "play")
 """Disturbances that are no failures of one joint."""
 _TOLD = "_told"  # ends the name of a policy that is told of the fault
-_FAULT_TASKS = ("fault", "velocity_untold")  # names of shipped policies that were trained with faults
+_FAULT_TASKS = {"fault_policy": "fault", "untold_policy": "velocity_untold"}  # tasks with faults, by their arms
 _MAIN_TASKS = ("velocity", "swim")  # names of the shipped policies that are judged
 _SAMPLE_STRIDE = 5  # control periods between two samples
 _MAX_ASYMMETRY = 0.5  # of the gait by hand, and of the walk by which its unequal strokes are calibrated
@@ -111,16 +111,18 @@ class Policies(Experiment):
     policy: Policy | None = None
     """The policy that is judged; None for the robot's ``velocity`` or ``swim`` of the catalog."""
     fault_policy: Policy | None = None
-    """A second policy beside it; None for one of the catalog that was trained with faults, where there is one."""
+    """A policy that was trained to be told of faults; None for ``fault`` of the catalog, where there is one."""
+    untold_policy: Policy | None = None
+    """A policy that was trained with faults of which it was not told; None for ``velocity_untold`` of the catalog."""
     still_policy: Policy | None = None
     """A policy that may not bend spine and tail; None for that of the catalog, where there is one."""
     arms: tuple[str, ...] = ARMS
     """Controls that are compared, ``policy`` among them."""
-    speeds: tuple[float, ...] = (1 / 3, 2 / 3, 1.0)
+    speeds: tuple[float, ...] = (0.2, 0.6, 1.0)
     """Commanded speeds over the greatest one that was trained [-]."""
     turns: tuple[float, ...] = (-1.0, 0.0, 1.0)
     """Commanded turning rates over the greatest one that was trained [-]."""
-    test_speed: float = 2 / 3
+    test_speed: float = 0.6
     """Commanded speed of disturbed walks over the greatest one that was trained [-]."""
     disturbances: tuple[str, ...] = DISTURBANCES
     """Disturbances: a heavier robot, late commands, less friction, play in all gears."""
@@ -176,7 +178,7 @@ class Policies(Experiment):
                 unknown = [choice for choice in getattr(self, name) if choice not in options]
                 check.that(not unknown, f"{self.name()}.{name} has {unknown}; there is {', '.join(options)}")
             check.that("policy" in self.arms, f"{self.name()}.arms is {self.arms}; 'policy' is needed among them")
-            for policy in (self.policy, self.fault_policy, self.still_policy):
+            for policy in (self.policy, self.fault_policy, self.untold_policy, self.still_policy):
                 if policy is not None:
                     policy.check_robot(self.robot)
             check.that(
@@ -189,7 +191,7 @@ class Policies(Experiment):
         return replace(
             self,
             arms=("policy", "open_loop", "feedback"),
-            speeds=(2 / 3,),
+            speeds=(self.test_speed,),
             turns=(0.0, 1.0),
             disturbances=("heavier",),
             faults=("limp",),
@@ -202,7 +204,14 @@ class Policies(Experiment):
     def for_robot(self, robot: Robot) -> Self:
         """Return the same question for another robot and the policy of the catalog that was trained for it."""
         plain = replace(
-            self, robot=robot, joints=(), policy=None, fault_policy=None, still_policy=None, timestep=coarse_step(robot)
+            self,
+            robot=robot,
+            joints=(),
+            policy=None,
+            fault_policy=None,
+            untold_policy=None,
+            still_policy=None,
+            timestep=coarse_step(robot),
         )
         return replace(plain, joints=plain.joint_names[: len(self.joints)])
 
@@ -220,17 +229,21 @@ class Policies(Experiment):
                 return policy_of(self.robot, task)
         return policy_of(self.robot, _MAIN_TASKS[0])
 
-    @property
-    def second_policy(self) -> Policy | None:
-        """The second policy; None where the catalog has none that was trained with faults."""
-        if self.fault_policy is not None:
-            return self.fault_policy
-        for task in _FAULT_TASKS:
-            if task in POLICIES or f"{task}_{self.robot.name}" in POLICIES:
-                try:
-                    return policy_of(self.robot, task)
-                except UnsuitedRobot:
-                    continue
+    def policy_with_faults(self, arm: str) -> Policy | None:
+        """Return the policy of an arm that was trained with faults; None where there is none for the robot.
+
+        Args:
+            arm: ``fault_policy`` or ``untold_policy``.
+        """
+        given: Policy | None = getattr(self, arm)
+        if given is not None:
+            return given
+        task = _FAULT_TASKS[arm]
+        if task in POLICIES or f"{task}_{self.robot.name}" in POLICIES:
+            try:
+                return policy_of(self.robot, task)
+            except UnsuitedRobot:
+                return None
         return None
 
     @property
@@ -263,10 +276,11 @@ class Policies(Experiment):
 
     def _policies(self) -> dict[str, Policy]:
         """Return the policies by their arms."""
-        second = self.second_policy if "fault_policy" in self.arms else None
         policies = {"policy": self.judged_policy}
-        if second is not None and second != self.judged_policy:
-            policies["fault_policy"] = second
+        for arm in _FAULT_TASKS:
+            policy = self.policy_with_faults(arm) if arm in self.arms else None
+            if policy is not None and policy not in policies.values():
+                policies[arm] = policy
         straight = self.straight_policy if STILL_AXIS in self.arms else None
         if straight is not None and self.judged_policy.bends_axis:
             policies[STILL_AXIS] = straight
@@ -459,12 +473,13 @@ class Policies(Experiment):
         """Return tracking errors, falls and costs of each control, over the commands and in each condition."""
         speed_error, turn_error = _errors(record)
         error = 0.5 * (speed_error + turn_error)
+        greater_error = speed_error.where(speed_error > turn_error, turn_error)
         undisturbed = record.condition == UNDISTURBED
         measures = Measures()
         for arm in _measured_arms(record):
             of_arm = {"arm": arm}
             grid = {"case": undisturbed}
-            follows = np.maximum(speed_error, turn_error) <= record.attrs["goal"]
+            follows = greater_error <= record.attrs["goal"]
             measures |= estimated(f"tracking_error_{arm}", error.sel(of_arm).isel(grid).mean("case"), "-")
             measures |= estimated(f"speed_error_{arm}", speed_error.sel(of_arm).isel(grid).mean("case"), "-")
             measures |= estimated(f"turn_error_{arm}", turn_error.sel(of_arm).isel(grid).mean("case"), "-")
@@ -472,7 +487,10 @@ class Policies(Experiment):
             measures |= estimated_fraction(f"fallen_{arm}", record.fallen.sel(of_arm).isel(grid).max("case"))
             straight = {"case": undisturbed & (record.commanded_turn == 0.0)}
             measures |= estimated(f"cost_{arm}", record.cost.sel(of_arm).isel(straight).mean("case", skipna=False), "-")
-            if arm != "policy":
+            if arm == "policy":
+                for number in np.flatnonzero(undisturbed.values):
+                    measures |= estimated(f"command_error_{number}", greater_error.sel(of_arm).isel(case=number), "-")
+            else:
                 excess = (error.sel(of_arm) - error.sel(arm="policy")).isel(grid).mean("case")
                 measures |= estimated(f"error_excess_{arm}", excess, "-")
             if arm == STILL_AXIS:
@@ -515,9 +533,18 @@ class Policies(Experiment):
             seed_count=len(policy.seeds),
             axis=self._axis_comparison(measures),
             commands=sum(case.condition == UNDISTURBED for case in self.cases()),
+            missed=self.missed_commands(measures),
             falls=[name for name, value in measures.items() if _is_fall(name, value)],
             fall_text=lambda name: _fall_text(name, self.arm_names()),
         )
+
+    def missed_commands(self, measures: Mapping[str, float]) -> list[Case]:
+        """Return the commands that the policy follows, by the median over robots, with more error than the goal."""
+        return [
+            case
+            for number, case in enumerate(self.cases())
+            if case.condition == UNDISTURBED and measures.get(f"command_error_{number}", 0.0) > self.goal
+        ]
 
     def _axis_comparison(self, measures: Mapping[str, float]) -> dict[str, Any]:
         """Return what spine and tail bring to a policy, for the explanation; empty where nothing was compared."""

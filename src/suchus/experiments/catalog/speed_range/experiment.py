@@ -35,7 +35,14 @@ from suchus.robot.kinematics.tree import frames
 from suchus.robot.motion import START, Gait, hip_height
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
-from suchus.sim.metrics import cost_of_transport, displacement, duty_factor, roll_peak_to_peak, time_window
+from suchus.sim.metrics import (
+    cost_of_transport,
+    displacement,
+    duty_factor,
+    electrical_cost_of_transport,
+    roll_peak_to_peak,
+    time_window,
+)
 from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -176,6 +183,7 @@ class SpeedRange(Experiment):
             speed,
             float(duty_factor(record, start, end).mean()),
             float(cost_of_transport(record, start, end)) if is_moving else float("nan"),
+            float(electrical_cost_of_transport(record, start, end)) if is_moving else float("nan"),
             speed**2 / (GRAVITY * height) if height > 0.0 else float("nan"),
             float(roll_peak_to_peak(record, start, end)),
             fastest,
@@ -216,6 +224,7 @@ class SpeedRange(Experiment):
                 **ranged(f"speed_{name}_slowest", own_record.speed.min(), gait_record.speed.min("slower"), "m/s"),
                 **ranged(f"speed_{name}_fastest", own_record.speed.max(), gait_record.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
+                f"electrical_cost_{name}": Measure(float(usual_cycle.electrical_cost), "-"),
                 f"cost_{name}_least": Measure(float(own_record.cost.min()), "-"),
                 f"duty_{name}": Measure(float(usual_cycle.duty), "-"),
                 f"froude_{name}": Measure(float(usual_cycle.froude), "-"),
@@ -271,6 +280,7 @@ _UNITS = {
     "speed": "m/s",
     "duty": "1",
     "cost": "1",
+    "electrical_cost": "1",
     "froude": "1",
     "rolled": "rad",
     "joint_speed": "rad/s",

@@ -124,6 +124,7 @@ class SpineKinematics(Experiment):
                 outcome.record,
                 ("pelvis", "yaw 1", "pitch 1", "yaw 2", "pitch 2", "yaw 3"),
                 "The frames of the spine, as Fig. 8 and Table II need them: X_0 forward, Y_0 left, Z_0 up.",
+                is_flat=True,
             ),
         }
 

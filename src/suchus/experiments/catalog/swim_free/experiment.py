@@ -40,7 +40,7 @@ from suchus.experiments.experiment import (
 )
 from suchus.robot.blueprint import read_correction, render
 from suchus.robot.control import Swimming
-from suchus.robot.design import GRAVITY, Robot, SectionCorrection, with_spring, with_values
+from suchus.robot.design import GRAVITY, Robot, SectionCorrection, layout, with_spring, with_values
 from suchus.robot.design.water import Water
 from suchus.robot.motion import LIMBS_BACK, Gait, suits
 from suchus.robot.robots import ROBOTS
@@ -58,6 +58,10 @@ from suchus.visual.figures.vortices import film_vortices
 
 MOTIONS = ("whole", "tail_only", "trunk_only", "reversed")
 """Motions that are compared, in open loop; those of a tail or a trunk alone where both bend."""
+SPREAD, FASTER = "limbs_spread", "faster"
+"""Further swims by the whole wave: with the limbs straight out, and with more frequent swings."""
+FASTER_SWINGS = 1.25
+"""Frequency of the swings of ``FASTER`` over that of the others [-]."""
 _MODELS = ("resistive", "reactive")
 _COEFFICIENT_FACTORS = {
     "cross_drag": (0.7, 1.5),
@@ -73,6 +77,7 @@ sheds. Drag and added mass may be farther off, as ``water.sections.correction_fa
 class SwimFree(Experiment):
     """The wave of (20) on the joints of a floating robot, in open loop: whole, tail only, trunk only and reversed.
 
+    Two more swims by the whole wave have the limbs straight out, and swings that are a quarter more frequent.
     The robot floats, heaves, rolls, pitches and steers as the water lets it. A cable fixes the sum of its joints'
     angles only; how they share it is up to rubber and water. So the swims of a robot with cables are repeated with
     stiffer joints. All are set beside two models whose midline is commanded and cannot see this. One run steers by a
@@ -103,6 +108,7 @@ class SwimFree(Experiment):
     )
     needs = ("axis",)
     answer_minima: ClassVar[Mapping[str, float]] = {"settle": 24, "dive": 24}
+    judged_minima: ClassVar[Mapping[str, float]] = {"settle": 24}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])
     """The robot that swims; it must float."""
@@ -347,12 +353,22 @@ class SwimFree(Experiment):
         ]
         steered_gait = _steered_gait(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))
+        for name, gait in self._varied_swims().items():
+            runs.append(Run(robot=self.robot, gait=gait, lake=lake, control=control, label=name))
         for name, ends in factors.items():
             for factor in ends:
                 lake_variant = _lake_with_factor(lake, name, factor)
                 label = f"{name} x {factor:g}"
                 runs.append(Run(robot=self.robot, gait=whole_wave, lake=lake_variant, control=control, label=label))
         return runs
+
+    def _varied_swims(self) -> Mapping[str, Gait]:
+        """Return the whole wave with limbs straight out and with faster swings, where limbs and joints allow them."""
+        back, settings = (LIMBS_BACK[0], self.limb_pitch), {"robot": self.robot, "reading": self.reading}
+        gaits = {FASTER: swim_of(**settings, frequency=FASTER_SWINGS * self.frequency, limbs=back)}
+        if layout(self.robot).limbs:
+            gaits[SPREAD] = swim_of(**settings, frequency=self.frequency, limbs=(0.0, self.limb_pitch))
+        return {name: gait for name, gait in gaits.items() if suits(self.robot, gait)}
 
     def _models(self, motions: Mapping[str, Gait]) -> xr.Dataset:
         """Return the speeds of the models whose midline is commanded, and the speed of the body wave [m/s]."""
@@ -387,7 +403,10 @@ class SwimFree(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return speeds, what the swim costs, how it rolls and turns, and how the cable's joints share their bend."""
         labels = [str(label) for label in record.label.values]
-        means = {label: _settled_speed(record.centre_of_mass.isel(run=i), record) for i, label in enumerate(labels)}
+        means = {
+            label: _settled_speed(record.centre_of_mass.isel(run=i), record, FASTER_SWINGS if label == FASTER else 1.0)
+            for i, label in enumerate(labels)
+        }
         speed = {label: mean.mean for label, mean in means.items()}
         excerpts = {label: _settled_cycles(record.isel(run=i), means[label].start) for i, label in enumerate(labels)}
         whole_swim, measures = excerpts["whole"], Measures()
@@ -447,6 +466,11 @@ class SwimFree(Experiment):
             | flow_measures(record)
         )
         real_water = self.real_water_speed({name: measure.value for name, measure in measures.items()})
+        measures |= {f"speed_{name}": Measure(speed[name], "m/s") for name in (SPREAD, FASTER) if name in speed}
+        if SPREAD in speed:
+            measures["gain_limbs_pressed"] = Measure(speed["whole"] / speed[SPREAD] - 1.0, "-")
+        if FASTER in speed:
+            measures["gain_faster_swings"] = Measure(speed[FASTER] / speed["whole"] - 1.0, "-")
         return measures | {
             "speed_real_water": Measure(real_water.speed, "m/s"),
             "speed_real_water_low": Measure(real_water.low, "m/s"),
@@ -534,7 +558,7 @@ def _lake_with_factor(lake: Lake, name: str, factor: float) -> Lake:
     return replace(lake, water=replace(Water(), **{name: factor * getattr(Water(), name)}))
 
 
-def _settled_speed(centre: xr.DataArray, record: xr.Dataset) -> SettledMean:
+def _settled_speed(centre: xr.DataArray, record: xr.Dataset, frequency_factor: float = 1.0) -> SettledMean:
     """Return the settled speed of the centre of mass along its first heading, +x [m/s].
 
     Where the swim is too short to be settled, it is the mean of the last ``measured_cycles``.
@@ -542,8 +566,9 @@ def _settled_speed(centre: xr.DataArray, record: xr.Dataset) -> SettledMean:
     Args:
         centre: centre of mass of one run, over ``time`` and ``xyz`` [m].
         record: record with ``frequency`` and ``measured_cycles``.
+        frequency_factor: frequency of this swim over that of the record [-].
     """
-    period = 1.0 / record.attrs["frequency"]
+    period = 1.0 / (frequency_factor * record.attrs["frequency"])
     time = centre.time.values.astype(float)
     ends = period * np.arange(whole_cycles(time, period) + 1)
     speeds = np.diff(np.interp(ends, time, centre.sel(xyz="x").values)) / period

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import permutations
+from itertools import pairwise, permutations
 from math import isfinite, nan
 from typing import Any, ClassVar, Literal
 
@@ -11,6 +11,7 @@ import xarray as xr
 
 from suchus.core.checks import Checks
 from suchus.core.errors import UnsuitedRobot
+from suchus.core.intervals import look_confidence, planned_looks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.experiment import (
@@ -111,7 +112,8 @@ class Terrain(Experiment):
     thrifty: bool = False
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
-    """Runs of each posture on each ground [-]."""
+    """Greatest number of runs of each posture on each ground [-]. After half of them sampling ends if the claim on
+    rough grounds has a word by then."""
     flat_robots: int = 12
     """Number of robots, each built of the design, of which the cost on even ground is compared [-]; at least six are
     needed for an interval of the median."""
@@ -306,21 +308,49 @@ class Terrain(Experiment):
         return rows
 
     def _ground_record(self, progress: Progress, names: Collection[str] = ()) -> xr.Dataset:
-        """Return the quantities of ``_UNITS`` by ground, condition and seed.
+        """Return the quantities of ``_UNITS`` by ground, condition and seed, until the claim has a word.
 
         Args:
+            progress: called with the fraction that is done.
+            names: conditions that walk; all if empty.
+        """
+        looks, parts = planned_looks(self.seeds), []
+        for first, count in pairwise((0, *looks)):
+            stage = staged(progress, "", first / looks[-1], count / looks[-1])
+            parts.append(self._walks_of_seeds(range(first, count), stage, names))
+            record = xr.concat(parts, "seed", join="exact", data_vars="minimal")
+            record["looks"] = ((), len(looks), {"units": "1", "long_name": "planned looks of sequential sampling"})
+            rough_record = _rough_grounds(record)
+            if not rough_record.sizes["ground"] or self.has_word(
+                "erect_structure_rough", _rough_measures(rough_record, record) | _falls(rough_record)
+            ):
+                break
+        return record
+
+    def _walks_of_seeds(self, seeds: range, progress: Progress, names: Collection[str]) -> xr.Dataset:
+        """Return the quantities of ``_UNITS`` by ground, condition and some of the seeds.
+
+        Args:
+            seeds: the seeds.
             progress: called with the fraction that is done.
             names: conditions that walk; all if empty.
         """
         grounds, arms = self.grounds(), {name: arm for name, arm in self.arms().items() if name in names or not names}
         runs = [
             self.tolerances.draw_run(
-                Run(robot=self.robot, gait=gait, control=control, ground=Ground(relief=relief), label=arm, seed=seed),
+                Run(
+                    robot=self.robot,
+                    gait=gait,
+                    control=control,
+                    ground=Ground(relief=reliefs[seed]),
+                    label=arm,
+                    seed=seed,
+                ),
                 seed,
             )
             for _, _, reliefs in grounds
             for arm, (gait, control) in arms.items()
-            for seed, relief in enumerate(reliefs)
+            for seed in seeds
         ]
         record = simulate(
             runs, duration=START + self.walked, timestep=self.timestep, sample_stride=5, progress=progress
@@ -343,11 +373,11 @@ class Terrain(Experiment):
         """Return the cost of transport of crawl and high walk on even ground, by condition and robot [-].
 
         Args:
-            ground_record: record of the grounds, of which the first is even; its robots count first.
+            ground_record: record of the grounds, of which the first is even; the robots of its seeds count first.
             progress: called with the fraction that is done.
         """
         arms = {name: arm for name, arm in self.arms().items() if name in FLAT_ARMS}
-        seeds = range(self.seeds, self.flat_robots)
+        seeds = range(ground_record.sizes["seed"], self.flat_robots)
         runs = [
             self.tolerances.draw_run(Run(robot=self.robot, gait=gait, control=control, label=name, seed=seed), seed)
             for name, (gait, control) in arms.items()
@@ -517,11 +547,11 @@ def _rough_measures(rough_record: xr.Dataset, record: xr.Dataset) -> Measures:
     even_distances = record.forward.isel(ground=0, drop=True)
     kept = (rough_record.forward / even_distances).stack(one=("ground", "seed"))
     crawl_kept, erect_kept = (kept.sel(arm=arm, drop=True) for arm in FLAT_ARMS)
-    is_judged = met_fraction >= 1.0
+    is_judged, confidence = met_fraction >= 1.0, look_confidence(int(record.looks))
     semi_erect_measures = Measures()
 
     def share(name: str, is_ahead: xr.DataArray) -> Measures:
-        return estimated_fraction(name, is_ahead if is_judged else [float("nan")])
+        return estimated_fraction(name, is_ahead if is_judged else [float("nan")], confidence=confidence)
 
     if "semi_erect" in rough_record.arm.values:
         semi = distances.sel(arm="semi_erect", drop=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import gcd
 from typing import Any, ClassVar
 
 import numpy as np
@@ -34,6 +35,7 @@ from suchus.visual.figures.gait_diagram import gait_lines
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 _STRAIGHT = 1e-3  # [1/m]; no radius beyond a kilometre
+_CIRCLE_STRIDE = 5  # [-]; control periods for each sample of a circle, 20 samples a second of the article's robot
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,9 +73,9 @@ class Turning(Experiment):
     """Shares of the last bend together with, on sprawled legs, the last asymmetry [-]."""
     asked: tuple[float, ...] = (0.6, 0.8, 1.2, 2.0, 3.0)
     """Radii of the commanded circles [m]."""
-    friction_scales: tuple[float, ...] = (0.8, 1.0, 1.25)
+    friction_scales: tuple[float, ...] = (0.8, 1.25)
     """Frictions of the grounds on which the circles are walked to either side, over that on which the curve is measured
-    [-]."""
+    [-]; on that ground itself they are walked to the left."""
     cycles: int = 10
     """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
@@ -145,9 +147,9 @@ class Turning(Experiment):
             self.asymmetries[-1] if gait.has("strokes") and not gait.erect else 0.0,
         )
         mixture_controls = [Walking(bend=m * max_mixture[0], asymmetry=m * max_mixture[1]) for m in self.mixtures]
-        record = self._walk(
-            gait, [*bend_controls, *asymmetry_controls, *mixture_controls], staged(progress, "", 0.0, 0.7)
-        )
+        controls = [*bend_controls, *asymmetry_controls, *mixture_controls]
+        runs = [Run(robot=self.robot, gait=gait, control=control) for control in controls]
+        record = self._walk(runs, staged(progress, "", 0.0, 0.7))
         curvatures = self._curvatures(gait, record)
         a, b = len(bend_controls), len(bend_controls) + len(asymmetry_controls)
         curve = _curve(max_mixture, self.mixtures, curvatures[b:])
@@ -156,10 +158,11 @@ class Turning(Experiment):
             mixture_controls[-1] if curve is None else turn(curve, max(radius, 1.001 * tightest))
             for radius in self.asked
         ]
-        circle_record = self._walk(gait, circles, staged(progress, "", 0.7, 0.8))
-        circle_curvatures = self._curvatures(gait, circle_record)
+        circle_record = self._circles(gait, circles, staged(progress, "", 0.7, 1.0))
+        all_curvatures = self._curvatures(gait, circle_record)
+        circle_curvatures = all_curvatures[: len(circles)]
         is_walked = np.array(self.asked) >= tightest
-        radius_ratio = self._radius_ratios(gait, circles, staged(progress, "", 0.8, 1.0))
+        radius_ratio = self._radius_ratios(all_curvatures[len(circles) :])
         data = xr.Dataset(
             {
                 "curvature_bend": ("bend", curvatures[:a], {"units": "1/m"}),
@@ -195,23 +198,34 @@ class Turning(Experiment):
             data[name].attrs["units"] = unit
         return data, (record.isel(run=b + int(curvatures[b:].argmax())), circle_record.isel(run=0))
 
-    def _radius_ratios(self, gait: Gait, circles: Sequence[Walking], progress: Any) -> np.ndarray:
-        """Return radii of circles over the commanded ones, shape (friction, side, circle) [-].
+    def _circles(self, gait: Gait, circles: Sequence[Walking], progress: Any) -> xr.Dataset:
+        """Return the record of circles to the left, then of those on each ground of another friction to either side.
 
         Args:
             gait: the gait.
             circles: controls that walk them to the left.
             progress: called with the fraction that is done.
         """
-        controls = [
+        both_sides = [
             Walking(bend=side * control.bend, asymmetry=side * control.asymmetry)
             for side in (1.0, -1.0)
             for control in circles
         ]
-        grounds = [Ground(friction_scale=scale) for scale in self.friction_scales]
-        record = self._walk(gait, controls, progress, grounds)
-        curvatures = self._curvatures(gait, record).reshape(len(grounds), 2, len(circles))
-        curvatures *= np.array([1.0, -1.0])[:, None]
+        runs = [Run(robot=self.robot, gait=gait, control=control) for control in circles]
+        runs += [
+            Run(robot=self.robot, gait=gait, control=control, ground=Ground(friction_scale=scale))
+            for scale in self.friction_scales
+            for control in both_sides
+        ]
+        return self._walk(runs, progress, max_stride=_CIRCLE_STRIDE)
+
+    def _radius_ratios(self, curvatures: np.ndarray) -> np.ndarray:
+        """Return radii of circles over the commanded ones, shape (friction, side, circle) [-].
+
+        Args:
+            curvatures: curvatures of their paths, left positive, ground by ground, those to the left first [1/m].
+        """
+        curvatures = curvatures.reshape(len(self.friction_scales), 2, -1) * np.array([1.0, -1.0])[:, None]
         return np.asarray(1.0 / np.maximum(curvatures, _STRAIGHT) / np.array(self.asked))
 
     def _bend_margin(self, gait: Gait) -> float:
@@ -224,23 +238,31 @@ class Turning(Experiment):
     def _end(self, gait: Gait) -> float:
         return START + (self.cycles + 1) * gait.period
 
-    def _walk(
-        self, gait: Gait, controls: Sequence[Walking], progress: Any, grounds: Sequence[Ground] = (Ground(),)
-    ) -> xr.Dataset:
-        """Return the record of walks under each control, on one ground after the other.
+    def _walk(self, runs: Sequence[Run], progress: Any, *, max_stride: int = 1) -> xr.Dataset:
+        """Return the record of walks in one gait.
+
+        Args:
+            runs: the walks.
+            progress: called with the fraction that is done.
+            max_stride: control periods for each sample at most [-]; the ends of the cycles are always sampled.
 
         Raises:
             OutsideLimits: a limb cannot follow strokes that are so unequal.
         """
-        runs = [
-            Run(robot=self.robot, gait=gait, control=control, ground=ground)
-            for ground in grounds
-            for control in controls
-        ]
+        gait, period = runs[0].gait, control_period(self.robot)
+        common = gcd(round(START / period), round(gait.period / period))
+        stride = max(stride for stride in range(1, max_stride + 1) if common % stride == 0)
         try:
-            return simulate(runs, duration=self._end(gait), timestep=self.timestep, progress=progress)
+            return simulate(
+                runs,
+                duration=self._end(gait),
+                timestep=self.timestep,
+                sample_stride=stride,
+                effort=False,
+                progress=progress,
+            )
         except NotConverged as error:
-            asymmetry = max(abs(control.asymmetry) for control in controls)
+            asymmetry = max(abs(run.control.asymmetry) for run in runs if isinstance(run.control, Walking))
             raise OutsideLimits(
                 f"robot {self.robot.name!r} cannot walk gait {gait.name!r} with strokes of asymmetry {asymmetry:g}: "
                 f"{str(error).partition(':')[0]}; give smaller --asymmetries."

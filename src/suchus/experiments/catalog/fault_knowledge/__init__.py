@@ -1,0 +1,1 @@
+"""What does a robot gain from knowing which of its joints has failed?"""

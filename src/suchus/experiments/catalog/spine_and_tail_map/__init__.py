@@ -1,0 +1,1 @@
+"""When do spine and tail pay, each gait at its own best?"""
