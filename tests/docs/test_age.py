@@ -43,6 +43,12 @@ def test_what_is_not_current_is_marked_below_its_passage(known, state, words):
     assert text.index("<!-- end -->") < text.index("*turning: ") < text.index("More words.")
 
 
+def test_a_result_that_was_never_computed_is_named_and_the_page_is_built(known, monkeypatch):
+    known("current")
+    monkeypatch.setattr(age, "names", lambda: ["another"])
+    assert f"*turning: {age.MISSING}*" in age.marked(PAGE)
+
+
 def test_what_is_current_is_not_marked(known):
     known("current")
     assert age.marked(PAGE) == PAGE

@@ -49,6 +49,8 @@ _GRIP, _APART, _LOST = r"\bgrips?\b", r"\b(?:came|comes?) apart\b", r"\blost joi
 MEANT = {
     "docs/architecture.md": tuple(OLD),
     "docs/conventions.md": (_LOST,),
+    "docs/terrain.md": (_GRIP,),
+    "src/suchus/experiments/catalog/spine_and_tail_map/explanation.md": (_GRIP,),
     "src/suchus/experiments/catalog/sensitivity/experiment.py": (_APART,),
     "src/suchus/experiments/catalog/shore/experiment.py": (_GRIP,),
     "src/suchus/experiments/catalog/shore/figure.py": (_GRIP,),

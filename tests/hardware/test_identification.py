@@ -203,7 +203,9 @@ def test_the_way_to_the_first_posture_is_no_swing():
     way = way.assign(servo_angle=way.servo_angle.copy(data=fraction * way.servo_angle.values[:1]))
     identified, _ = identify_walking(xr.concat([way, log], "time"), ROBOT, models)
     alone, _ = identify_walking(log, ROBOT, models)
-    assert identified == alone
+    assert {name: servo.armature for name, servo in identified.items()} == {
+        name: servo.armature for name, servo in alone.items()
+    }
 
 
 def test_inertia_from_a_walk_is_as_great_as_the_torque_constant_is_said():

@@ -141,15 +141,17 @@ def test_what_a_ready_made_search_begins_with_can_be_steered(name):
         run.control.start(Runs.identical(run.control, run.robot, run.gait), control_period(run.robot))
 
 
-def test_the_search_of_a_fault_has_a_condition_for_each_joint_that_the_article_breaks():
+def test_the_search_of_a_fault_has_a_condition_for_each_joint_that_the_article_breaks_and_for_none():
     spec = READY["fault"]()
+    joints = [joint for joint in failing_joints(ROBOTS["caiman"]) if joint in FAILED_JOINTS]
     assert [arm.name for arm in spec.arms] == [
-        f"{joint}_{group}"
-        for joint in failing_joints(ROBOTS["caiman"])
-        if joint in FAILED_JOINTS
-        for group in ("coordinated", "limbs_only")
+        f"{joint}_{group}" for joint in ("intact", *joints) for group in ("coordinated", "limbs_only")
     ]
-    for arm in spec.arms:
+    intact, others = spec.arms[:2], spec.arms[2:]
+    for arm, group in zip(intact, READY["crawl"]().arms, strict=True):
+        assert spec.for_arm(arm).run.faults == ()
+        assert spec.for_arm(arm).run.gait == READY["crawl"]().for_arm(group).run.gait
+    for arm in others:
         run = spec.for_arm(arm).run
         (fault,) = run.faults
         assert isinstance(fault, Limp)
@@ -158,7 +160,7 @@ def test_the_search_of_a_fault_has_a_condition_for_each_joint_that_the_article_b
         assert run.gait == READY["crawl"]().for_arm(group).run.gait
     other = READY["fault"](ROBOTS["strider"])
     assert other.name == "fault_strider"
-    assert all(other.for_arm(arm).run.faults for arm in other.arms)
+    assert all(other.for_arm(arm).run.faults for arm in other.arms[2:])
 
 
 def test_the_first_candidate_of_a_fault_is_the_robot_that_is_not_told():

@@ -17,6 +17,8 @@ WORDS: Mapping[str, str] = {
     "not checked here": "Computed with suchus {version} ({commit}); not checked here.",
 }
 """What a page says below a passage, by the state of its results."""
+MISSING = "Not computed yet."
+"""What it says where the store has no such result."""
 
 
 def marked(markdown: str) -> str:
@@ -27,17 +29,23 @@ def marked(markdown: str) -> str:
 
 
 def mark(results: Iterable[str]) -> str:
-    """Return the line below a passage: of its results that are not current the oldest state, or nothing.
+    """Return the line below a passage: a result that is missing, else the oldest state of one that is not current.
+
+    Nothing is returned where all are current.
 
     Args:
         results: names of the results that the passage states.
     """
     order = list(WORDS)
     states = {name: state(name) for name in results if name in RESULTS}
-    listed = sorted((order.index(word), name) for name, word in states.items() if word in WORDS)
+    listed = sorted(
+        (order.index(word) if name in names() else -1, name) for name, word in states.items() if word in WORDS
+    )
     if not listed:
         return ""
     worst, name = listed[0]
+    if name not in names():
+        return f"\n*{name}: {MISSING}*{{ .age }}\n"
     origin = load(name).origin
     text = WORDS[order[worst]].format(version=origin.version, commit=origin.commit or "commit unknown")
     return f"\n*{name}: {text}*{{ .age }}\n"

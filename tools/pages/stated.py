@@ -31,7 +31,7 @@ from suchus.article.verdict.judging import ROBUST
 from suchus.experiments import experiment
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.policies.figure import condition_label
-from suchus.experiments.claims import RULES, UNRULED, claims_of
+from suchus.experiments.claims import RULES, UNRULED, claims_of, known_claims
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -103,7 +103,7 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "judged": judged,
-                            "numbers": numbers,
+                            "numbers": numbers, "known_claims": known_claims,
                             "greatest": greatest, "naturally": naturally,
                             "condition_label": condition_label}  # fmt: skip
     return environment
@@ -176,10 +176,15 @@ def _filled(block: str, width: int) -> str:
     )  # fmt: skip
 
 
+def _of_today(rows: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fractions of designs that today's rules judged; what another rule judged says nothing."""
+    return {claim: row for claim, row in rows.items() if claim in RULES and row.rule == RULES[claim].asked}
+
+
 def page(name: str, **content: Any) -> str:
     """Return a whole page that is made of what the catalogs hold, its words in ``docs/stated/pages``."""
-    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "shares": SHARES, "too_few": SPARSE_SHARES,
-             "unruled": UNRULED, "rules": RULES}  # fmt: skip
+    known = {"authors": AUTHORS, "title": TITLE, "robust": ROBUST, "unruled": UNRULED, "rules": RULES}
+    known |= {"shares": _of_today(SHARES), "too_few": _of_today(SPARSE_SHARES)}
     return templates().get_template(f"pages/{name}.md").render(known | content) + "\n"
 
 

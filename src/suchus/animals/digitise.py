@@ -12,7 +12,7 @@ from PIL import Image
 
 from suchus.animals.capture import UnusableTracks
 from suchus.animals.capture.tracks import GAIT_KEYPOINTS
-from suchus.animals.pictures import Frame, frames
+from suchus.animals.pictures import FilmFrame, frames
 from suchus.core.files import versions
 from suchus.robot.design import LEGS
 from suchus.visual.replay.page import embed_json, environment
@@ -106,7 +106,7 @@ def _chosen(film: Path, rate: float | None, start: float | None, end: float | No
             yield _Shot(time, frame.picture)
 
 
-def _time(film: Path, frame: Frame, index: int, rate: float | None) -> float:
+def _time(film: Path, frame: FilmFrame, index: int, rate: float | None) -> float:
     """Return the time of a frame since the first [s]: by the rate if it is given, else as the film says."""
     if rate is not None:
         return index / rate

@@ -18,7 +18,7 @@ VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mpeg", ".wm
 _INSTALL = 'pip install "suchus[capture]"'
 
 
-class Frame(NamedTuple):
+class FilmFrame(NamedTuple):
     """One frame of a film."""
 
     picture: Image.Image
@@ -31,7 +31,7 @@ def is_film(path: Path) -> bool:
     return path.is_dir() or path.suffix.lower() in (*MOVING, *VIDEOS)
 
 
-def frames(film: Path) -> Iterator[Frame]:
+def frames(film: Path) -> Iterator[FilmFrame]:
     """Yield the frames of a film.
 
     Args:
@@ -46,23 +46,23 @@ def frames(film: Path) -> Iterator[Frame]:
             raise UnreadableFile(f"{film} holds no pictures ({', '.join(PICTURES)}).")
         for file in files:
             with _opened(file) as picture:
-                yield Frame(picture.copy(), None)
+                yield FilmFrame(picture.copy(), None)
         return
     check_file(film)
     yield from _moving_frames(film) if film.suffix.lower() in MOVING else _video_frames(film)
 
 
-def _moving_frames(film: Path) -> Iterator[Frame]:
+def _moving_frames(film: Path) -> Iterator[FilmFrame]:
     """Yield the frames of a GIF or another file of several pictures; each says how long it is shown."""
     time: float | None = 0.0
     with _opened(film) as pictures:
         for frame in ImageSequence.Iterator(pictures):
             duration = frame.info.get("duration") or None  # [ms]; of the frame that is shown now
-            yield Frame(frame.copy(), time)
+            yield FilmFrame(frame.copy(), time)
             time = time + duration / 1000.0 if time is not None and duration else None
 
 
-def _video_frames(film: Path) -> Iterator[Frame]:
+def _video_frames(film: Path) -> Iterator[FilmFrame]:
     """Yield the frames of a video, by the av library."""
     try:
         import av  # noqa: PLC0415  an optional extra
@@ -77,7 +77,7 @@ def _video_frames(film: Path) -> Iterator[Frame]:
                 if frame.time is not None and first is None:
                     first = frame.time
                 time = None if frame.time is None or first is None else frame.time - first
-                yield Frame(frame.to_image(), time)
+                yield FilmFrame(frame.to_image(), time)
     except (OSError, ValueError, IndexError) as error:
         raise UnreadableFile(
             f"{film} cannot be read as a video: it is missing, damaged, or of a format that the av library does not "

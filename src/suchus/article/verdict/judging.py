@@ -69,7 +69,7 @@ class SparseShare:
     words: Mapping[str, int]
     """Number of designs by the word that each says [-]."""
     of: str
-    """The experiment that was asked again for it."""
+    """The experiment that was asked again for it; empty where the walks of the study were."""
     rule: str
     """Digest of the rule that judged the designs, ``Rule.asked``."""
 

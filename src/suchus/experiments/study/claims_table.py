@@ -49,7 +49,7 @@ def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
         "samples": count,
         "words": dict(Counter(word for word in claim_record.word.values.tolist() if word))
         if "word" in claim_record
-        else {},
+        else _words_of_walks(record, count, true),
         "true": true / count if count else float("nan"),
         "interval": share_interval(true, count),
         "number": (float(quantile_5), float(median), float(quantile_95)),
@@ -73,6 +73,21 @@ def claim_row(record: xr.Dataset, claim: str) -> dict[str, Any]:
             "separation": float(claim_record.border_separation),
         },
     }
+
+
+def _words_of_walks(record: xr.Dataset, count: int, true: int) -> dict[str, int]:
+    """Return how many of the designs that walk say what, where too few can judge a claim; else nothing.
+
+    Args:
+        record: record of ``claims.conduct_claims``.
+        count: number of designs that can judge the claim [-].
+        true: number of those for which it holds [-].
+    """
+    if count >= MIN_POINTS:
+        return {}
+    walked = int((record.status == "walked").sum())
+    words = {"reproduced": true, "contradicted": count - true, "not testable": walked - count}
+    return {word: number for word, number in words.items() if number}
 
 
 def deciders(parameters: np.ndarray, index: Index) -> list[int]:
@@ -145,7 +160,7 @@ def shares(rows: Sequence[Mapping[str, Any]], sweep_records: Mapping[str, xr.Dat
             if row.get("words"):
                 word_row = {
                     "words": row["words"],
-                    "of": experiment_of_claim[row["claim"]],
+                    "of": experiment_of_claim.get(row["claim"], ""),
                     "rule": RULES[row["claim"]].asked,
                 }
                 share_rows[row["claim"]] = word_row

@@ -45,7 +45,7 @@ _GROWTH = 0.5  # [cycle]; over which stroke and bends grow after a change of gai
 _SAMPLING_STRIDE = 10  # [-]; control periods per stored sample
 
 
-class Cell(NamedTuple):
+class FaultWalk(NamedTuple):
     """One condition of the campaign."""
 
     arm: str
@@ -143,11 +143,11 @@ class FaultKnowledge(TwoGroups):
         searched = read_searches(self.searches, self.robot, self.gait)
         joints = searched.joints
         cells = [
-            Cell(arm, kind, joint, gait)
+            FaultWalk(arm, kind, joint, gait)
             for arm, kind, joint in product(ARMS, KINDS, joints)
             for gait in (KEPT, INTACT, *(joints if (arm, kind) == _CROSSED else (joint,)))
         ]
-        cells += [Cell(arm, "", "", gait) for arm in ARMS for gait in (KEPT, INTACT)]
+        cells += [FaultWalk(arm, "", "", gait) for arm in ARMS for gait in (KEPT, INTACT)]
         record = require_complete(
             simulate(
                 self.tolerances.repeats([self.walk(cell, searched) for cell in cells], self.repeats, self.seed),
@@ -165,7 +165,7 @@ class FaultKnowledge(TwoGroups):
         """Time at which the joint fails [s]."""
         return START + self.onset * self.gait.period
 
-    def walk(self, cell: Cell, searched: SearchedGaits) -> Run:
+    def walk(self, cell: FaultWalk, searched: SearchedGaits) -> Run:
         """Return the walk of one condition."""
         walk_gait = self.gait if cell.arm == "coordinated" else self.control_group
         control = Walking()
@@ -178,18 +178,18 @@ class FaultKnowledge(TwoGroups):
             label=" ".join(part for part in cell if part),
         )  # fmt: skip
 
-    def _searched_gait(self, cell: Cell, searched: SearchedGaits) -> Gait:
+    def _searched_gait(self, cell: FaultWalk, searched: SearchedGaits) -> Gait:
         """Return the searched gait of a condition."""
         return searched.gaits[f"{cell.gait}_{cell.arm}"]
 
-    def _faults(self, cell: Cell, gait: Gait) -> tuple[Fault, ...]:
+    def _faults(self, cell: FaultWalk, gait: Gait) -> tuple[Fault, ...]:
         """Return the fault of a condition, which begins during the walk; none for the intact robot."""
         if not cell.joint:
             return ()
         faults = joint_failure(self.robot, gait, cell.joint, cell.kind, hold=self.hold)  # type: ignore[arg-type]
         return tuple(replace(fault, at=self._fault_time) for fault in faults)  # type: ignore[type-var]
 
-    def _cell_record(self, record: xr.Dataset, cells: Sequence[Cell], searched: SearchedGaits) -> xr.Dataset:
+    def _cell_record(self, record: xr.Dataset, cells: Sequence[FaultWalk], searched: SearchedGaits) -> xr.Dataset:
         """Return the displacements of all conditions by arm, kind, joint and state, and of a limp joint by gait.
 
         Args:
@@ -224,7 +224,7 @@ class FaultKnowledge(TwoGroups):
         seconds = window.time.values - self._fault_time
         return data.assign_coords(reference=[KEPT, INTACT], time=("time", seconds, {"units": "s"}))
 
-    def _by_cell(self, values: np.ndarray, cells: Sequence[Cell], joints: Sequence[str]) -> xr.DataArray:
+    def _by_cell(self, values: np.ndarray, cells: Sequence[FaultWalk], joints: Sequence[str]) -> xr.DataArray:
         """Return values of all walks over arm, kind, joint, gait and repeat; NaN for conditions that were not walked.
 
         Args:

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from suchus.core.checks import Checks
+from suchus.core.errors import NotConverged, OutsideLimits
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.experiment import (
     Experiment,
@@ -244,18 +245,28 @@ class Turning(Experiment):
             runs: the walks.
             progress: called with the fraction that is done.
             max_stride: control periods for each sample at most [-]; the ends of the cycles are always sampled.
+
+        Raises:
+            OutsideLimits: a limb cannot follow strokes that are so unequal.
         """
         gait, period = runs[0].gait, control_period(self.robot)
         common = gcd(round(START / period), round(gait.period / period))
         stride = max(stride for stride in range(1, max_stride + 1) if common % stride == 0)
-        return simulate(
-            runs,
-            duration=self._end(gait),
-            timestep=self.timestep,
-            sample_stride=stride,
-            effort=False,
-            progress=progress,
-        )
+        try:
+            return simulate(
+                runs,
+                duration=self._end(gait),
+                timestep=self.timestep,
+                sample_stride=stride,
+                effort=False,
+                progress=progress,
+            )
+        except NotConverged as error:
+            asymmetry = max(abs(run.control.asymmetry) for run in runs if isinstance(run.control, Walking))
+            raise OutsideLimits(
+                f"robot {self.robot.name!r} cannot walk gait {gait.name!r} with strokes of asymmetry {asymmetry:g}: "
+                f"{str(error).partition(':')[0]}; give smaller --asymmetries."
+            ) from error
 
     def _curvatures(self, gait: Gait, record: xr.Dataset) -> np.ndarray:
         """Return the curvature of each path [1/m]."""

@@ -19,6 +19,7 @@ from suchus.sim.model.importing.tree import JOINED, Joint, TreePart
 SKEW = 5.0
 """Degrees by which a hinge may miss the robot's axes."""
 _EXACT = 0.06  # degrees; less is not worth a word
+_ARMATURE_RATIO = 0.9 * MAX_INERTIA_RATIO  # of a draft, at most: copies that are built lighter must be allowed too
 _WIDEST = 3.1416  # rad; of a range in a robot's file
 
 
@@ -45,7 +46,7 @@ class Size:
     length: float
     """Length of the robot [m]."""
     max_armature: float
-    """Rotor inertia of a servo, at most [kg m2]; see ``design.body.MAX_INERTIA_RATIO``."""
+    """Rotor inertia of a servo, at most [kg m2]; less than ``design.body.MAX_INERTIA_RATIO`` allows."""
 
 
 def turn_of(joint: Joint, axis: np.ndarray, remarks: list[str]) -> tuple[Turn, float]:
@@ -288,8 +289,8 @@ class Making:
         if joint.armature > self.size.max_armature:
             self.notes[f"{drive}.armature"] = f"of the file, {joint.armature:g}, but no more than suits the body"
             self.remarks.append(
-                f"The file's armature of up to {self.max_file_armature:.3g} kg m2 is more than a tenth of the robot's "
-                f"mass times its length squared; the draft has {self.size.max_armature:.3g} kg m2."
+                f"The file's armature of up to {self.max_file_armature:.3g} kg m2 is more than {_ARMATURE_RATIO:g} of "
+                f"the robot's mass times its length squared; the draft has {self.size.max_armature:.3g} kg m2."
             )
 
 
@@ -298,7 +299,7 @@ def making_of(plan: BodyPlan, words: Words) -> Making:
     corners = plan.plane.to_robot_frame(np.concatenate([plan.tree_part(i).corners for i in plan.axis]))
     axis_length = float(np.ptp(corners[:, 0]))
     length = max(axis_length, 0.2 * plan.tree.size)
-    max_armature = max((1.0 - 1e-6) * MAX_INERTIA_RATIO * plan.tree.mass * axis_length**2, 1e-15)
+    max_armature = max(_ARMATURE_RATIO * plan.tree.mass * axis_length**2, 1e-15)
     return Making(
         plan=plan,
         words=words,
