@@ -66,7 +66,7 @@ _UNITS = {"forward": "m", "speed": "m/s", "cost": "1", "electrical": "1", "margi
 )
 _FIRST_SIGMA, _NEXT_SIGMA = 0.2, 0.1  # spread of the first search, and of those that start from its best
 _CORRELATION = 0.06  # [m]; of bumps, about a foot's length
-_MAX_LISTED = 3  # conditions that a sentence names
+_MAX_LISTED = 2  # conditions that a sentence names
 _MARGIN_SAMPLES = 8  # instants of the last cycle at which the support is looked at
 
 
