@@ -7,7 +7,7 @@ from suchus.apps.report.outcome_page import answer
 from suchus.experiments.catalog import EXPERIMENTS
 
 MAX_WORDS = 80
-LONG = {"joint_faults": 90, "spine_and_tail_map": 110, "swim_free": 110, "swimming": 110}
+LONG = {"fault_knowledge": 180, "joint_faults": 90, "spine_and_tail_map": 110, "swim_free": 110, "swimming": 110}
 """Answers of several models, joints or conditions, each with its number."""
 OTHERWISE_STORED = {"policies"}
 """Experiments whose results are stored in another form than their measures."""
