@@ -187,7 +187,7 @@ CALLS = {
     "writing.check_replaceable": lambda at, _: record.check_replaceable(at("text.toml")),
     "writing.new_file": lambda at, _: drafted(record.new_file(at("new"))),
     "writing.new_folder": lambda at, _: drafted(record.new_folder(at("new"))),
-    "writing.sweep": lambda at, _: record.sweep(at("new")),
+    "writing.remove_leftovers": lambda at, _: record.remove_leftovers(at("new")),
     "writing.write": lambda at, _: record.write(at("new"), "text"),
 }  # fmt: skip
 

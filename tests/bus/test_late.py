@@ -20,13 +20,13 @@ class Scripted:
     def __init__(self, *portions):
         self.portions, self.ready = list(portions), []
 
-    def send(self, data, wait):
+    def send(self, data, timeout):
         self.ready += self.portions.pop(0)
 
-    def receive(self, wait):
+    def receive(self, timeout):
         if self.ready:
             return self.ready.pop(0)
-        sleep(wait)
+        sleep(timeout)
         return b""
 
 

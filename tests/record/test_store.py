@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import IncompatibleRecord, UnreadableFile, Unwritable
-from suchus.core.files import check_writable, digest, load, new_folder, plain, provenance, save, sweep
+from suchus.core.files import check_writable, digest, load, new_folder, plain, provenance, remove_leftovers, save
 from suchus.core.writing import MANIFEST
 
 
@@ -180,9 +180,9 @@ def test_what_a_process_that_died_has_left_is_swept_and_the_older_result_comes_b
     (tmp_path / ".results-abc").mkdir()
     (shelter / "old").mkdir()
     (shelter / "old/m").write_text("an older one")
-    sweep(place)  # it died between the two renames
+    remove_leftovers(place)  # it died between the two renames
     assert (place / "m").read_text() == "an older one"
     (shelter / "old").mkdir(parents=True)
-    sweep(place)
+    remove_leftovers(place)
     assert (place / "m").read_text() == "an older one"
     assert sorted(path.name for path in tmp_path.iterdir()) == [".results-abc", "result"]

@@ -10,10 +10,10 @@ from suchus.swimming.water import (
     Quarters,
     Sway,
     SwimMeasures,
-    attempts,
     convex_higher,
     efficiency,
     fit,
+    fits_of_readings,
     max_amplitude_factor,
     printed_wave,
     readings_table,
@@ -109,7 +109,7 @@ def test_a_swing_is_as_much_of_a_sine_as_it_is():
 
 
 def test_every_reading_is_tried_and_the_table_says_why_not(robot):
-    tried = attempts(robot, frequency=1.0)
+    tried = fits_of_readings(robot, frequency=1.0)
     made = {one.letter for one in tried if one.fit is not None}
     assert {"A", "C", "F", "H", "I", "K"} <= made
     assert not made & {"B", "D", "G", "J"}

@@ -181,7 +181,7 @@ def new_folder(path: str | Path, *, lasting: bool = False) -> Iterator[Path]:
         raise _unwritable(path, error) from error
 
 
-def sweep(path: str | Path) -> None:
+def remove_leftovers(path: str | Path) -> None:
     """Remove what processes that died while they wrote ``path`` have left beside it; an older folder comes back.
 
     What a living process is at stays: it holds a lock on its draft.
@@ -201,7 +201,7 @@ def sweep(path: str | Path) -> None:
 @contextmanager
 def _shelter(path: Path) -> Iterator[Path]:
     """Yield a temporary folder beside a path, locked as long as we live, after those of the dead are taken away."""
-    sweep(path)
+    remove_leftovers(path)
     for _ in range(100):
         with (
             tempfile.TemporaryDirectory(dir=path.parent, prefix=f".{path.name}-", ignore_cleanup_errors=True) as folder,

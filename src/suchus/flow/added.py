@@ -105,7 +105,7 @@ def generalised_added_mass(
         body_rows = slice(rows.start, rows.stop)
         body_modes.append([_body_motion(mode, body_rows) for mode in modes])
     rim = _rim(water, outlines, body_modes, water.mirror_cuts)
-    responses.fixed_side_mass += _joint_work(water, modes, responses.joint_correction)
+    responses.fixed_side_mass += _link_joint_work_matrix(water, modes, responses.joint_correction)
     times = 2 ** max(sum(mirror_cuts) for mirror_cuts in water.mirror_cuts)
     h = water.grid.cell
     corner = np.array(water.grid.origin)
@@ -115,13 +115,17 @@ def generalised_added_mass(
     return AddedMass(0.5 * (matrix + matrix.T), pressed)
 
 
-def _joint_work(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndarray) -> np.ndarray:
-    """Return the work of each mode against the joint correction of each other mode, shape (mode, mode).
+def _link_joint_work_matrix(water: Fluid, modes: Sequence[Twists], joint_correction: np.ndarray) -> np.ndarray:
+    """Return the work of each mode against the joint correction of each other mode, shape (mode, mode) [m^2/s^2].
+
+    The correction removes the force with which the pressure pushes links apart at the cuts between them.
 
     Args:
         water: water with the bodies placed.
         modes: motions of all parts.
-        joint_correction: see ``_ModeResponses``.
+        joint_correction: correction of force and torque on each row for each mode, shape (mode, row, axis + rotation):
+            force [m/s^2], then torque about the corner of the grid [m/s^2 cells], both over density and volume of a
+            cell. Further columns do not count.
     """
     ndim, h, corner = water.ndim, water.grid.cell, np.array(water.grid.origin)
     turns = len(ROTATION_PLANES[ndim])

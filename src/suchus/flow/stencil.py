@@ -57,15 +57,15 @@ def seal_slab(a, slab, inner, repeats):
 
 
 @kernel_part
-def copy_slab(target, o, x, slab):
-    """Copy slab ``slab`` of ``x`` to slab ``o`` of ``target``.
+def copy_slab(target, target_slab, source, source_slab):
+    """Copy slab ``source_slab`` of ``source`` to slab ``target_slab`` of ``target``.
 
     The loop replaces an assignment of slices: numba's message for slices of different lengths takes longer to compile
     than the kernels.
     """
-    o, j = unsigned(o), unsigned(slab)
-    for k in range(unsigned(x.shape[1])):
-        target[o, k] = x[j, k]
+    o, j = unsigned(target_slab), unsigned(source_slab)
+    for k in range(unsigned(source.shape[1])):
+        target[o, k] = source[j, k]
 
 
 @kernel_part

@@ -92,7 +92,7 @@ QUANTITIES: Mapping[str, str] = {
 
 @dataclass(frozen=True, slots=True)
 class _LoggedMotion:
-    """Means over the control periods of a log, all arrays of shape (period, servo)."""
+    """Means over the control periods of a log, all arrays of shape (control_period, servo)."""
 
     current: np.ndarray
     """Current [A]."""
@@ -234,7 +234,7 @@ def _places(servos: slice) -> range:
     return range(servos.start, servos.stop)
 
 
-def _swings(angles: Float[np.ndarray, "sample servo"], robot: Robot) -> Bool[np.ndarray, "period servo"]:
+def _swings(angles: Float[np.ndarray, "sample servo"], robot: Robot) -> Bool[np.ndarray, "control_period servo"]:
     """Return in which control periods the foot of each servo's limb is in the air; never for servos of no limb.
 
     The height of a foot counts from the root of the robot, and from the height of this foot in stance, so that a body
@@ -265,7 +265,7 @@ def _turning_time(motion: _LoggedMotion, i: int, period: float) -> float:
     return float(_turns(motion, i).sum()) * period
 
 
-def _turns(motion: _LoggedMotion, i: int) -> Bool[np.ndarray, " period"]:
+def _turns(motion: _LoggedMotion, i: int) -> Bool[np.ndarray, " control_period"]:
     """Return in which control periods a servo turned and everything of it was measured."""
     is_known = motion.is_known[:, i] & np.isfinite(motion.load[:, i]) & np.isfinite(motion.current[:, i])
     return np.asarray(is_known & (np.abs(motion.speed[:, i]) > _MIN_SPEED))
@@ -324,7 +324,7 @@ def _motion(record: xr.Dataset, robot: Robot, period: float) -> _LoggedMotion:
         is_known &= heard[1:] & heard[:-1]
     load = _load(robot, *(np.where(is_known, values, 0.0) for values in (angle, speed, acceleration)))
     goal = np.where(np.isfinite(record.servo_target.values), record.servo_target.values, 0.0)
-    goal = _followed(_smooth(goal, np.ones(len(goal), dtype=bool)), angles)
+    goal = _followed(_moving_mean(goal, np.ones(len(goal), dtype=bool)), angles)
     goal_speed = np.gradient(goal, period, axis=0)
     goal_acceleration = np.gradient(goal_speed, period, axis=0)
     instruments = tuple(0.5 * (values[1:] + values[:-1]) for values in (goal, goal_speed, goal_acceleration))
@@ -336,7 +336,10 @@ def _motion(record: xr.Dataset, robot: Robot, period: float) -> _LoggedMotion:
 
 
 def _load(robot: Robot, angle: np.ndarray, speed: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
-    """Return the torques that move the bodies of a robot along a motion of its servos, shape (period, servo) [N m]."""
+    """Return the torques that move the bodies of a robot along a motion of its servos [N m].
+
+    The torques have the shape (control_period, servo).
+    """
     return held_torques(
         robot, hinge_angles(robot, angle), _hinge_rates(robot, speed), _hinge_rates(robot, acceleration)
     )
@@ -391,8 +394,8 @@ class _Balance:
 
     def _fit(self, terms: np.ndarray, values: np.ndarray, instruments: np.ndarray) -> "_Fit":
         """Return the fit of a series by terms, all averaged over some control periods."""
-        smooth_terms, smooth_instruments = (_smooth(columns, self.is_used) for columns in (terms, instruments))
-        return _Fit(smooth_terms, _smooth(values[:, None], self.is_used)[:, 0], self.is_used, smooth_instruments)
+        smooth_terms, smooth_instruments = (_moving_mean(columns, self.is_used) for columns in (terms, instruments))
+        return _Fit(smooth_terms, _moving_mean(values[:, None], self.is_used)[:, 0], self.is_used, smooth_instruments)
 
     @property
     def unexplained(self) -> float:
@@ -421,7 +424,7 @@ class _Balance:
             )
         torque = torque_constant * self.current - self.load
         fit = self._fit(self._terms, torque, self._instruments)
-        columns = _smooth(self._terms, self.is_used)[self.is_used]
+        columns = _moving_mean(self._terms, self.is_used)[self.is_used]
         unmeasured = (_TRUNK_ACCELERATION * float(np.sqrt((self.load[self.is_used] ** 2).mean()))) ** 2
         variance = unmeasured / _INDEPENDENT_SAMPLES * np.linalg.pinv(columns.T @ columns / len(columns))[0, 0]
         half = np.sqrt(fit.half(0) ** 2 + _Z_95**2 * variance + (_SWING_MODEL_ERROR * fit.value(0)) ** 2)
@@ -467,8 +470,13 @@ class _Balance:
         return {**estimates, "torque_constant": torque_constant}
 
 
-def _smooth(values: Float[np.ndarray, "period term"], is_used: Bool[np.ndarray, " period"]) -> np.ndarray:
-    """Return means over some control periods, for the steps of registers, of those among them that are used."""
+def _moving_mean(
+    values: Float[np.ndarray, "control_period term"], is_used: Bool[np.ndarray, " control_period"]
+) -> np.ndarray:
+    """Return the mean of the used rows within ``_SMOOTHING`` control periods around each row.
+
+    The mean averages out the registers' steps.
+    """
     weights = np.convolve(is_used, np.ones(_SMOOTHING), mode="same")
     filled = np.where(is_used[:, None], values, 0.0)
     sums = np.apply_along_axis(np.convolve, 0, filled, np.ones(_SMOOTHING), "same")
@@ -507,7 +515,8 @@ def _identify_loop(
 
 
 def _late_fit(
-    is_known: Bool[np.ndarray, " period"], goal: np.ndarray, angle: np.ndarray, torque: np.ndarray, speed: np.ndarray,
+    is_known: Bool[np.ndarray, " control_period"], goal: np.ndarray, angle: np.ndarray, torque: np.ndarray,
+    speed: np.ndarray,
     *, has_play: bool,
 ) -> tuple[int, "_Fit", float]:  # fmt: skip
     """Return the best number of whole control periods of delay, its fit, and how much time is on the rarer side [-].
@@ -527,7 +536,7 @@ def _late_fit(
         terms = np.column_stack([late - later, torque, speed, *([side] if has_play else []), np.ones_like(torque)])
         is_used = is_known & np.isfinite(terms).all(axis=1) & (torque != 0.0)
         is_used[: _MAX_LAG + 1] = False
-        fit = _Fit(_smooth(terms, is_used), _smooth((late - angle)[:, None], is_used)[:, 0], is_used)
+        fit = _Fit(_moving_mean(terms, is_used), _moving_mean((late - angle)[:, None], is_used)[:, 0], is_used)
         minority = float(np.mean(side[is_used] > 0.0)) if is_used.any() else 0.0
         fits.append((float((fit.residual**2).mean()) if is_used.any() else np.inf, lag, fit, minority))
     _, lag, fit, minority = min(fits, key=lambda entry: entry[0])
@@ -547,14 +556,15 @@ class _Fit:
     of ``_INDEPENDENT_SAMPLES``, however long the log is.
 
     Args:
-        terms: shape (period, term).
-        values: shape (period,).
-        is_used: periods that count, shape (period,).
-        instruments: terms without noise in the place of the others, shape (period, term); None for least squares.
+        terms: shape (control_period, term).
+        values: shape (control_period,).
+        is_used: periods that count, shape (control_period,).
+        instruments: terms without noise in the place of the others, shape (control_period, term); None for least
+            squares.
     """
 
     def __init__(
-        self, terms: np.ndarray, values: np.ndarray, is_used: Bool[np.ndarray, " period"],
+        self, terms: np.ndarray, values: np.ndarray, is_used: Bool[np.ndarray, " control_period"],
         instruments: np.ndarray | None = None,
     ) -> None:  # fmt: skip
         scale = np.maximum(np.abs(terms[is_used]).max(axis=0), 1e-300)

@@ -138,9 +138,9 @@ def _is_near(lag: float, other: float) -> bool:
 class _LaggedLink(NamedTuple):
     """Variation of the distance of two neighbours with the lag between them."""
 
-    varies: Float[np.ndarray, " lag"]
+    relative_variance: Float[np.ndarray, " lag"]
     """Variance of their distance over that of noise, by how much later the second one is seen [-]."""
-    chord: float
+    bend_variance: float
     """What of that a body that bends between the two may add [-]: there the line between them is shorter."""
     lag: float
     """By how much the second one runs behind the first, 0 where that is not sure [s]."""
@@ -208,53 +208,63 @@ class _Lags:
         if len(self._time) < _FRAMES:
             return {}
         first_positions = self._places({first_name for first_name, _ in pairs}, 0.0)
-        mean, varies = np.empty((2, len(pairs), len(self.lags)))
+        mean_distances, distance_variances = np.empty((2, len(pairs), len(self.lags)))
         for i, lag in enumerate(self.lags):  # the turns of the mean cycle are those of all points
             second_positions = self._places({second_name for _, second_name in pairs}, lag)
             for j, (first_name, second_name) in enumerate(pairs):
                 distance = np.linalg.norm(second_positions[second_name] - first_positions[first_name], axis=-1)
-                mean[j, i], varies[j, i] = np.mean(distance), np.var(distance)
-        return {pair: self._link(pair, mean[j], varies[j]) for j, pair in enumerate(pairs)}
+                mean_distances[j, i], distance_variances[j, i] = np.mean(distance), np.var(distance)
+        return {pair: self._link(pair, mean_distances[j], distance_variances[j]) for j, pair in enumerate(pairs)}
 
-    def _link(self, pair: tuple[str, str], mean: np.ndarray, varies: np.ndarray) -> _LaggedLink:
+    def _link(
+        self,
+        pair: tuple[str, str],
+        mean_distance: Float[np.ndarray, " lag"],
+        distance_variance: Float[np.ndarray, " lag"],
+    ) -> _LaggedLink:
         """Return how the distance of a pair varies with the lag, in units of the variance that noise explains.
 
         Args:
             pair: names of the keypoints.
-            mean: mean distance for each lag [m or px].
-            varies: variance of the distance for each lag.
+            mean_distance: mean distance of the keypoints at each lag, shape (lag,) [m or px].
+            distance_variance: variance of that distance at each lag, shape (lag,) [m^2 or px^2].
         """
         residual = [course.residual for name in pair for course in self._courses[name]]
         mean_square_bend = np.mean(
             [self._mean_square_bends[name] for name in pair if name in self._mean_square_bends] or [0.0]
         )  # a chord of what bends
-        sways = float(mean[self._zero_index]) * np.hypot(_SKIN, mean_square_bend / 8)
+        link_length = float(mean_distance[self._zero_index])
+        sways = link_length * np.hypot(_SKIN, mean_square_bend / 8)
         noise = sum(float(np.nanvar(series)) for series in residual) / 2 + sways**2
-        chord = float((mean[self._zero_index] * mean_square_bend / 16) ** 2 / noise)
-        if mean[self._zero_index] > self._max_link:  # the same in every cycle: more frames do not make it smaller
-            chord += (_CHORD * float(mean[self._zero_index])) ** 2 / noise
+        bend_variance = float((link_length * mean_square_bend / 16) ** 2 / noise)
+        if link_length > self._max_link:  # the same in every cycle: more frames do not make it smaller
+            bend_variance += (_CHORD * link_length) ** 2 / noise
         frames = len(self._tracks.time) * min(1.0, *(_independent_fraction(series) for series in residual))
         count = max(2 * len(course.harmonics) + len(course.drift) for name in pair for course in self._courses[name])
-        return _LaggedLink(varies / noise, chord, self._surely(varies / noise, chord, frames, count / frames), frames)
+        relative_variance = distance_variance / noise
+        lag = self._significant_lag(relative_variance, bend_variance, frames, count / frames)
+        return _LaggedLink(relative_variance, bend_variance, lag, frames)
 
-    def _surely(self, varies: np.ndarray, chord: float, frames: float, floor: float) -> float:
+    def _significant_lag(
+        self, relative_variance: Float[np.ndarray, " lag"], bend_variance: float, frames: float, floor: float
+    ) -> float:
         """Return the lag at which a distance varies least [s], 0 if it is not significant.
 
         Args:
-            varies: variance of the distance over that of noise, by the lag.
-            chord: what of that a bend between the points may add.
+            relative_variance: variance of the distance over that of noise at each lag, shape (lag,) [-].
+            bend_variance: part of that variance that a bend between the points may add [-].
             frames: number of frames with independent residuals.
             floor: variance that noise gives to the fitted paths; a smaller one is chance.
         """
-        best = int(np.argmin(varies))
-        variance_drop = float(varies[self._zero_index] - max(float(varies[best]), floor))
+        best = int(np.argmin(relative_variance))
+        variance_drop = float(relative_variance[self._zero_index] - max(float(relative_variance[best]), floor))
         gained = frames * variance_drop
         halfway = (best + self._zero_index) // 2
         is_significant = (
             gained > _GAIN
-            and variance_drop > chord
-            and varies[best] < _EXPLAINS * varies[self._zero_index]
-            and varies[halfway] - varies[best] < _MAX_HALFWAY * variance_drop
+            and variance_drop > bend_variance
+            and relative_variance[best] < _EXPLAINS * relative_variance[self._zero_index]
+            and relative_variance[halfway] - relative_variance[best] < _MAX_HALFWAY * variance_drop
         )
         lag = float(self.lags[best])
         return lag if is_significant and abs(lag) > _MIN_LAG * self._clock.period else 0.0
@@ -268,9 +278,11 @@ class _Lags:
         candidates: dict[str, tuple[float, float]] = {}
         for front, name, rear in zip(chain, chain[1:], chain[2:], strict=False) if links else ():
             front_link, rear_link, paced = links[front, name], links[name, rear], self._paced(chain, name)
-            variances = front_link.varies, rear_link.varies[::-1]
+            variances = front_link.relative_variance, rear_link.relative_variance[::-1]
             turn_gain = min(front_link.frames, rear_link.frames) * (
-                sum(row[self._zero_index] - row for row in variances) - front_link.chord - rear_link.chord
+                sum(row[self._zero_index] - row for row in variances)
+                - front_link.bend_variance
+                - rear_link.bend_variance
             )
             turn_gain /= _SHARED_NOISE
             turn_gain[self._zero_index] = 0.0
@@ -306,7 +318,7 @@ class _Lags:
                 if neighbour != other:
                     outer_pair = (neighbour, name) if (neighbour, name) in links else (name, neighbour)
                     is_same_sense = (outer_pair[1] == name) == (pair[1] == name)
-                    row = links[outer_pair].varies[:: 1 if is_same_sense else -1]
+                    row = links[outer_pair].relative_variance[:: 1 if is_same_sense else -1]
                     decrease[name] += float(row[self._zero_index] - row[index])
         return max(pair, key=lambda name: decrease[name])
 
@@ -319,11 +331,12 @@ class _Lags:
         links = self.links([(neighbour, name) for neighbour in neighbours])
         if not links:
             return False
-        varies = np.sum([link.varies for link in links.values()], axis=0)
-        by_turns = float(self.lags[int(np.argmin(varies))])
+        relative_variance = np.sum([link.relative_variance for link in links.values()], axis=0)
+        by_turns = float(self.lags[int(np.argmin(relative_variance))])
         index = int(np.argmin(np.abs(self.lags - lag)))
         paced = self._paced(chain, name)
-        is_by_turns = float(varies[index]) < float(varies[self._zero_index]) and _is_near(by_turns, lag)
+        has_smaller_variance = float(relative_variance[index]) < float(relative_variance[self._zero_index])
+        is_by_turns = has_smaller_variance and _is_near(by_turns, lag)
         is_by_pace = paced.z_score > _MIN_HALF_Z and _is_near(paced.lag, lag)
         return is_by_turns or is_by_pace
 

@@ -204,7 +204,13 @@ def _typical_noise(noise: Mapping[str, float], scale: float) -> float:
 
 
 def _shaky_keypoints(tracks: Tracks, noise: Mapping[str, float], scale: float) -> dict[str, str]:
-    """Return the keypoints whose noise hides their motion, while others are seen well."""
+    """Return the keypoints whose noise hides their motion, while others are seen well.
+
+    Args:
+        tracks: the keypoints.
+        noise: noise of each keypoint, by its name [m or px].
+        scale: length of the trunk [m or px].
+    """
     chain, typical_noise = tracks.midline, _typical_noise(noise, scale)
     link = float(np.median([np.nanmedian(_distance(tracks, a, b)) for a, b in pairwise(chain)]))
     faults = {}

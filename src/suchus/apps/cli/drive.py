@@ -430,15 +430,15 @@ class PrintingPort:
         self._names = {servo.id: servo.name for servo in wiring.servo}
         self._tables = {servo.id: servo.table for servo in wiring.servo}
 
-    def send(self, data: bytes, wait: float) -> None:
+    def send(self, data: bytes, timeout: float) -> None:
         """Send bytes, and print the packets in them."""
         for packet in self._decoder.feed(data):
             self._tell(packet, data)
-        self._port.send(data, wait)
+        self._port.send(data, timeout)
 
-    def receive(self, wait: float) -> bytes:
+    def receive(self, timeout: float) -> bytes:
         """Return what has arrived."""
-        return self._port.receive(wait)
+        return self._port.receive(timeout)
 
     def close(self) -> None:
         """Close the port."""

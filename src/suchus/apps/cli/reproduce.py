@@ -19,7 +19,7 @@ from suchus.apps.cli.terminal import Bars, working
 from suchus.apps.report import Failure, Result, check_place, has_all_files, load_result, write_page
 from suchus.core import threads
 from suchus.core.errors import SuchusError
-from suchus.core.files import check_replaceable, check_writable, has_same_provenance, sweep
+from suchus.core.files import check_replaceable, check_writable, has_same_provenance, remove_leftovers
 from suchus.core.jobs import Job, finish, place_for
 from suchus.core.progress import Progress
 from suchus.core.writing import asked_to_replace, replacing
@@ -228,7 +228,7 @@ def _run_tasks(tasks: Sequence[ExperimentTask], bars: Bars, *, jobs: int, anew: 
     finally:
         for number, task in enumerate(order):
             if not results.has(number):
-                sweep(task.out / task.name)
+                remove_leftovers(task.out / task.name)
     return [results.get(order.index(task)) for task in tasks]
 
 
@@ -259,7 +259,7 @@ def _attempt_with_shelf(task: ExperimentTask, progress: Progress, shelf: list[st
 
 
 def _report_crash(task: ExperimentTask, exit_code: int | None) -> TaskResult:
-    sweep(task.out / task.name)
+    remove_leftovers(task.out / task.name)
     return failed(
         task.name, f"its process ended with exit code {exit_code}; where memory was short, --jobs 1 takes less of it."
     )

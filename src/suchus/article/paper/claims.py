@@ -10,14 +10,14 @@ from suchus.article.paper.claims_land import LAND
 from suchus.article.paper.tables import C1, C2, K
 
 
-def _constant(key: str, name: str, value: float, digit: float) -> Claim:
+def _wave_constant(key: str, name: str, value: float, last_digit: float) -> Claim:
     """Return the claim about a constant of the body wave (20).
 
     Args:
         key: key of the claim.
         name: name of the constant.
         value: value as printed.
-        digit: unit of the last printed digit.
+        last_digit: unit of the last printed digit.
     """
     return Claim(
         key=key,
@@ -25,7 +25,7 @@ def _constant(key: str, name: str, value: float, digit: float) -> Claim:
         quantity=f"{name} of the body wave",
         value=value,
         unit="-",  # none is printed
-        rounding=digit / 2,  # half of the last printed digit
+        rounding=last_digit / 2,  # half of the last printed digit
         sense="The midline of the swimming robot is fitted by (20) with c1 = 0.027, c2 = 0.30, k = 0.023.",
         quote="c1 = 0.027, c2 = 0.30 and k = 0.023",
     )
@@ -60,9 +60,9 @@ WATER = (
         "The midline of the swimming robot has the form (20): a sine under an envelope that grows to the tail.",
         "the center line trajectory is drawn and modeled into the form of fish body wave function",
     ),
-    _constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
-    _constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
-    _constant("wave_k", "wave number k", K, 0.001),
+    _wave_constant("wave_c1", "linear envelope coefficient c1", C1, 0.001),
+    _wave_constant("wave_c2", "quadratic envelope coefficient c2", C2, 0.01),
+    _wave_constant("wave_k", "wave number k", K, 0.001),
     statement(
         "swim_pressure_convex",
         "IV.B, Fig. 17a",

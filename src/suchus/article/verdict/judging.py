@@ -225,13 +225,13 @@ def judge(
         rule.reason(measures),
         deciding,
         rule.unable(measures),
-        rule.unknown(measures),
+        rule.unknown_intervals_sentence(measures),
         _reading_sentence(words, measures),
     )
     reason = " ".join(text for text in reason_parts if text)
     if model_voices:
-        _, min_value, max_value = ladder.spread(model_voices)
-        lower_bound, upper_bound = (min_value, max_value) if isfinite(value) else (None, None)
+        model_interval = ladder.value_and_interval(model_voices)
+        lower_bound, upper_bound = (model_interval.low, model_interval.high) if isfinite(value) else (None, None)
         reason = f"{reason} {ladder.sentence(model_voices, rule.form)}"
     elif rule.measure in rule.spread and isfinite(value):
         lower_bound, upper_bound = (
@@ -273,7 +273,7 @@ def _is_printed_value(printed_value: float, rounding: float, value: float) -> bo
 
 
 def _value(rule: Rule, measures: Mapping[str, float], model_voices: Sequence[ladder.Voice]) -> float:
-    return ladder.spread(model_voices)[0] if model_voices else float(measures[rule.measure])
+    return ladder.value_and_interval(model_voices).median if model_voices else float(measures[rule.measure])
 
 
 def _of_rule(rule: Rule, row: _Row | None) -> _Row | None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from suchus.article.verdict.rule import Clause, Reading, Rule, Rung, listed
 
@@ -122,14 +122,28 @@ def agreed(model_voices: Sequence[Voice]) -> bool | None:
     return answers == {"holds"} if len(answers) == 1 else None
 
 
-def spread(model_voices: Sequence[Voice]) -> tuple[float, float, float]:
+class ModelInterval(NamedTuple):
+    """Number of a claim by the models that have a word, in the unit of its measure."""
+
+    median: float
+    """Median of the models' numbers; NaN if no model has a word."""
+    low: float
+    """Least number of their halves, starting sides and grids; NaN if no model has a word."""
+    high: float
+    """Greatest of these numbers; NaN if no model has a word."""
+
+
+def value_and_interval(model_voices: Sequence[Voice]) -> ModelInterval:
     """Return the median number of the models that have a word, and the least and greatest of all; NaN without one."""
     voices_with_word = [voice for voice in model_voices if voice.says != "no word"]
     if not voices_with_word:
-        return nan, nan, nan
+        return ModelInterval(nan, nan, nan)
     values = sorted(voice.value for voice in voices_with_word)
-    middle = 0.5 * (values[(len(values) - 1) // 2] + values[len(values) // 2])
-    return middle, min(voice.low for voice in voices_with_word), max(voice.high for voice in voices_with_word)
+    return ModelInterval(
+        median=0.5 * (values[(len(values) - 1) // 2] + values[len(values) // 2]),
+        low=min(voice.low for voice in voices_with_word),
+        high=max(voice.high for voice in voices_with_word),
+    )
 
 
 _SENTENCES: Mapping[Says, str] = MappingProxyType(

@@ -330,7 +330,7 @@ class Rule:
         text = f"{measures[clause.measure]:.3g}"
         return f"{text}, {ends[0]:.3g} to {ends[1]:.3g}" if clause.measure in self.spread else text
 
-    def unknown(self, measures: Mapping[str, float]) -> str:
+    def unknown_intervals_sentence(self, measures: Mapping[str, float]) -> str:
         """Return a sentence that names the measures whose intervals are unknown; empty if all are known."""
         names = [
             name

@@ -13,7 +13,15 @@ from suchus.core.files.provenance import (
 from suchus.core.files.store import load, save
 from suchus.core.files.tables import write_tables
 from suchus.core.reading import check_file, path_exists, read_json, read_text, read_toml
-from suchus.core.writing import check_name, check_replaceable, check_writable, new_file, new_folder, sweep, write
+from suchus.core.writing import (
+    check_name,
+    check_replaceable,
+    check_writable,
+    new_file,
+    new_folder,
+    remove_leftovers,
+    write,
+)
 
 __all__ = [
     "check_file",
@@ -34,8 +42,8 @@ __all__ = [
     "read_json",
     "read_text",
     "read_toml",
+    "remove_leftovers",
     "save",
-    "sweep",
     "versions",
     "write",
     "write_tables",

@@ -117,7 +117,7 @@ class Tally:
     def under_way(self, number: int, units: float) -> None:
         """Report the finished units of a piece in progress [-]; several pieces may be in progress at once."""
         self._open_units[number] = units
-        self._tell()
+        self._report()
 
     def finished(self, number: int, units: float, *, failed: int = 0, fresh: bool = True) -> None:
         """Count a finished piece.
@@ -132,9 +132,9 @@ class Tally:
         self.done += units
         self.failed += failed
         self._earlier_units += 0.0 if fresh else units
-        self._tell()
+        self._report()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Report the count, the rate and the remaining time of the whole job."""
         done_units = self.done + sum(self._open_units.values())
         seconds = time.perf_counter() - self._start

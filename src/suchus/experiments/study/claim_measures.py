@@ -156,7 +156,7 @@ def judge_samples(rule: Rule, measures: Mapping[str, np.ndarray]) -> tuple[np.nd
     rule_measures, rows = select_measures(rule, measures), _rows(rule, measures)
     if rule.rungs:
         sample_voices = [ladder.voices(rule, row) for row in rows]
-        number = np.array([ladder.spread(voices)[0] for voices in sample_voices], dtype=float)
+        number = np.array([ladder.value_and_interval(voices).median for voices in sample_voices], dtype=float)
         answers = [None if ladder.disagree(voices) else ladder.agreed(voices) for voices in sample_voices]
     else:
         number = np.asarray(rule_measures[rule.measure], dtype=float)

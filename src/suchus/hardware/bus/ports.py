@@ -32,18 +32,18 @@ class Port(Protocol):
     name: str
     """As the user named it."""
 
-    def send(self, data: bytes, wait: float) -> None:
+    def send(self, data: bytes, timeout: float) -> None:
         """Send all of some bytes.
 
         Args:
             data: what to send.
-            wait: how long it may take [s].
+            timeout: how long it may take [s].
 
         Raises:
             BusGone: the other end is gone, or takes nothing for so long.
         """
 
-    def receive(self, wait: float) -> bytes:
+    def receive(self, timeout: float) -> bytes:
         """Return what has arrived; nothing if nothing does for so long [s].
 
         Raises:
@@ -67,24 +67,24 @@ class FilePort:
         self.name, self._fd, self._owner = name, descriptor, owner
         os.set_blocking(descriptor, False)
 
-    def send(self, data: bytes, wait: float) -> None:
+    def send(self, data: bytes, timeout: float) -> None:
         """Send all of some bytes, see ``Port``."""
-        end, remainder = monotonic() + wait, memoryview(data)
+        end, remainder = monotonic() + timeout, memoryview(data)
         with self._noticing():
             while remainder:
                 _, ready, _ = select.select((), (self._fd,), (), max(end - monotonic(), 0.0))
                 if not ready:
                     raise BusGone(
                         f"the bus {self.name} took {len(data) - len(remainder)} of {len(data)} bytes and then none for "
-                        f"{wait:.3g} s: what is at its other end does not read; look at the adapter and its cable."
+                        f"{timeout:.3g} s: what is at its other end does not read; look at the adapter and its cable."
                     )
                 with suppress(BlockingIOError):
                     remainder = remainder[os.write(self._fd, remainder) :]
 
-    def receive(self, wait: float) -> bytes:
+    def receive(self, timeout: float) -> bytes:
         """Return the received bytes, see ``Port``; empty after a time without any."""
         with self._noticing():
-            ready, _, _ = select.select((self._fd,), (), (), max(wait, 0.0))
+            ready, _, _ = select.select((self._fd,), (), (), max(timeout, 0.0))
             if not ready:
                 return b""
             try:

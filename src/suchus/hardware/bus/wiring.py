@@ -295,7 +295,7 @@ def _refuse_linear(robot: Robot) -> None:
 
 
 def check_names(owner: str, names: Sequence[str], robot: Robot) -> None:
-    """Refuse names that differ from those of a robot's servos.
+    """Refuse names that are not exactly the robot's servos, each once.
 
     Args:
         owner: what names them, for the message.

@@ -463,17 +463,17 @@ class MemoryPort:
         self.deaf = False
         """Whether the other end reads no more."""
 
-    def send(self, data: bytes, wait: float) -> None:
+    def send(self, data: bytes, timeout: float) -> None:
         """Let the emulator take bytes; it answers at once."""
         if self.gone or self.deaf:
-            cause = "is gone" if self.gone else f"took no bytes for {wait:.3g} s"
+            cause = "is gone" if self.gone else f"took no bytes for {timeout:.3g} s"
             raise BusGone(f"the bus {self.name} {cause}.")
         for _, reply in self._emulator.hear(self._number, data):
             self._coming += reply
 
-    def receive(self, wait: float) -> bytes:
+    def receive(self, timeout: float) -> bytes:
         """Return what has been answered; nothing comes later."""
-        del wait
+        del timeout
         if self.gone:
             raise BusGone(f"the bus {self.name} is gone.")
         data = bytes(self._coming)

@@ -4,6 +4,8 @@ The plane of the tail: origin in the middle of the first plate, x backward, y to
 bend turns the tip to the right. "Toward" is the cord on the side of a positive bend.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Float
 
@@ -17,15 +19,21 @@ def bend_limit(tail: TailPlates) -> float:
     return float(2 * tail.joints * np.arctan2(tail.gap, tail.cord_spacing))
 
 
-def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*batch"], Float[np.ndarray, "*batch"]]:
+class CordChanges(NamedTuple):
+    """Changes of the cords' lengths inside the tail, positive where a cord gets longer."""
+
+    toward: Float[np.ndarray, "*batch"]
+    """Change of the cord on the side of a positive bend [m]."""
+    away: Float[np.ndarray, "*batch"]
+    """Change of the other cord [m]."""
+
+
+def cable_changes(tail: TailPlates, bend: Numbers) -> CordChanges:
     """Return by how much both cords get longer inside the tail, exactly, over all joints.
 
     Args:
         tail: the measures of the cable section.
         bend: total angle of the cable section [rad].
-
-    Returns:
-        Changes of the cord towards the bend and of the cord away from it [m].
 
     Raises:
         OutsideLimits: a bend closes the gaps between the plates.
@@ -43,7 +51,7 @@ def cable_changes(tail: TailPlates, bend: Numbers) -> tuple[Float[np.ndarray, "*
     count = tail.joints
     turn = count * tail.cord_spacing * np.sin(theta / (2 * count))
     sag = 2 * count * tail.gap * np.sin(theta / (4 * count)) ** 2
-    return np.asarray(-turn - sag), np.asarray(turn - sag)
+    return CordChanges(toward=np.asarray(-turn - sag), away=np.asarray(turn - sag))
 
 
 def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
@@ -56,8 +64,8 @@ def slack(tail: TailPlates, bend: Numbers) -> Float[np.ndarray, "*batch"]:
     Raises:
         OutsideLimits: a bend closes the gaps between the plates.
     """
-    inner_change, outer_change = cable_changes(tail, bend)
-    return np.asarray(-(inner_change + outer_change))
+    changes = cable_changes(tail, bend)
+    return np.asarray(-(changes.toward + changes.away))
 
 
 def servo_angle(tail: Cords, bend: Numbers) -> Float[np.ndarray, "*batch"]:

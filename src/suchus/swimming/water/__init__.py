@@ -4,7 +4,7 @@ Swims by CFD stand in ``suchus.swimming.water.resolved``, which loads the flow s
 """
 
 from suchus.robot.design.water import Water
-from suchus.swimming.water.fit import Attempt, Fit, attempts, fit, readings_table, swim_of
+from suchus.swimming.water.fit import Fit, ReadingFit, fit, fits_of_readings, readings_table, swim_of
 from suchus.swimming.water.measures import (
     Quarters,
     Sway,
@@ -25,7 +25,6 @@ from suchus.swimming.water.waves import BodyWave, FilmedWave, PrintedWave, print
 
 __all__ = [
     "MODELS",
-    "Attempt",
     "BodySilhouette",
     "BodyWave",
     "Cruise",
@@ -38,19 +37,20 @@ __all__ = [
     "Outline",
     "PrintedWave",
     "Quarters",
+    "ReadingFit",
     "RealWaterSpeed",
     "SpeedEstimate",
     "Sway",
     "SwimMeasures",
     "Undulation",
     "Water",
-    "attempts",
     "convex_higher",
     "cruise",
     "cycle",
     "displaced_mass",
     "efficiency",
     "fit",
+    "fits_of_readings",
     "level",
     "max_amplitude_factor",
     "motion_of_record",

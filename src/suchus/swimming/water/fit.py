@@ -187,7 +187,7 @@ def swim_of(
     return fit(hull_free_robot, printed_wave(hull_free_robot, reading, frequency=cycles, sign=-1), limbs=limbs).gait
 
 
-class Attempt(NamedTuple):
+class ReadingFit(NamedTuple):
     """The fit to one reading of (20)."""
 
     letter: str
@@ -198,7 +198,7 @@ class Attempt(NamedTuple):
     """Why not: the joint and by how much."""
 
 
-def attempts(robot: Robot, *, frequency: float) -> list[Attempt]:
+def fits_of_readings(robot: Robot, *, frequency: float) -> list[ReadingFit]:
     """Return the fit of a robot's joints to (20) in each of its readings.
 
     Args:
@@ -209,13 +209,13 @@ def attempts(robot: Robot, *, frequency: float) -> list[Attempt]:
     for letter in READINGS:
         wave = printed_wave(robot, letter, frequency=frequency)
         try:
-            results.append(Attempt(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
+            results.append(ReadingFit(letter, fit(robot, wave, name=f"(20), reading {letter}"), ""))
         except OutsideLimits as refused:
-            results.append(Attempt(letter, None, str(refused)))
+            results.append(ReadingFit(letter, None, str(refused)))
     return results
 
 
-def readings_table(readings: Iterable[Attempt], thrust: Mapping[str, str]) -> str:
+def readings_table(readings: Iterable[ReadingFit], thrust: Mapping[str, str]) -> str:
     """Return a Markdown table of readings: units, misfit, what the joints make of it, thrust.
 
     Args:

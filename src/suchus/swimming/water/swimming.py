@@ -169,7 +169,7 @@ def survey(robot: Robot, motions: Sequence[Gait], *, water: Water | None = None,
         [[_evaluate_motion(outline, motion, model, medium) for motion in motions] for model in MODELS.values()]
     )
     data = {name: (("model", "motion"), values[:, :, i], {"units": VALUES[name]}) for i, name in enumerate(VALUES)}
-    possible = [_possible(robot, motion) for motion in motions]
+    possible = [_is_feasible(robot, motion) for motion in motions]
     return xr.Dataset({**data, "possible": ("motion", possible, {"units": "1"})}, coords={"model": list(MODELS)})
 
 
@@ -182,11 +182,11 @@ def max_amplitude_factor(robot: Robot, motion: Gait, *, max_factor: float = 4.0)
         max_factor: factor that is not gone beyond [-].
     """
     lower_bound, upper_bound = 0.0, max_factor
-    if _possible(robot, motion.bent(upper_bound)):
+    if _is_feasible(robot, motion.bent(upper_bound)):
         return upper_bound
     while upper_bound - lower_bound > 1e-4:
         middle = 0.5 * (lower_bound + upper_bound)
-        if _possible(robot, motion.bent(middle)):
+        if _is_feasible(robot, motion.bent(middle)):
             lower_bound = middle
         else:
             upper_bound = middle
@@ -211,7 +211,7 @@ def _evaluate_motion(outline: Outline, motion: Gait, model: Model, water: Water)
     )
 
 
-def _possible(robot: Robot, motion: Gait) -> bool:
+def _is_feasible(robot: Robot, motion: Gait) -> bool:
     """Return whether joints and servos can follow a motion."""
     try:
         check_limits(robot, motion)

@@ -191,7 +191,7 @@ class BipedalReach(Experiment):
                 "margin_standing": Measure(float(margin.sel(time=slice(upright_time, leave_time)).min()), "m"),
                 "margin_rising": Measure(min_lead(record), "m"),
                 "reach_after": Measure(float(height.sel(time=slice(down_time, None)).max()), "m"),
-                "way_after": Measure(_distance(record.centre_of_mass.isel(run=0), down_time), "m"),
+                "way_after": Measure(_forward_displacement(record.centre_of_mass.isel(run=0), down_time), "m"),
                 "stretched_length": Measure(facts["stretched"], "m"),
                 "ceiling": Measure(float(record.ceiling.max()), "m"),
                 "reach_high_crawl": Measure(float(record.crawl_reach[highest_crawl]), "m"),
@@ -469,7 +469,7 @@ def min_lead(record: xr.Dataset) -> float:
     return float(rising.lead[lifted_samples[0] :].min()) if lifted_samples.size else float("nan")
 
 
-def _distance(position: xr.DataArray, start_time: float) -> float:
+def _forward_displacement(position: xr.DataArray, start_time: float) -> float:
     """Return the forward displacement of a point after a start time [m].
 
     Args:

@@ -73,7 +73,10 @@ class SpineKinematics(Experiment):
         return replace(self, postures=500, grid=24)
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
-        """Invert random postures, compare others with (15), and map the workspace."""
+        """Recover random postures by inverse kinematics, compare tip positions of (15) with exact ones.
+
+        The workspace is mapped, too.
+        """
         back = self.robot.spine
         angles = _random(back, self.postures, self.seed)
         progress("random postures", 0.0)

@@ -57,10 +57,10 @@ from suchus.swimming.water import (
     RealWaterSpeed,
     SpeedEstimate,
     SwimMeasures,
-    attempts,
     convex_higher,
     efficiency,
     fit,
+    fits_of_readings,
     printed_wave,
     readings_table,
     real_water_speed,
@@ -312,14 +312,14 @@ class PlaneSwims(Experiment):
 
     def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
-        attempts_by_letter = {attempt.letter: attempt for attempt in attempts(self.robot, frequency=self.frequency)}
+        fits_by_letter = {reading.letter: reading for reading in fits_of_readings(self.robot, frequency=self.frequency)}
         further = [letter for letter in self.readings if letter != self.reading]
         setting, thrust = (
             self._setting(min(4, self.cycles), cells=self.readings_cells, reynolds=self.readings_reynolds),
             [],
         )
         for i, letter in enumerate(further):
-            wave_fit, stage = attempts_by_letter[letter].fit, portion(progress, i, len(further))
+            wave_fit, stage = fits_by_letter[letter].fit, portion(progress, i, len(further))
             if wave_fit is None:
                 thrust.append(float("nan"))
                 continue
@@ -330,7 +330,7 @@ class PlaneSwims(Experiment):
             for letter, value in zip(further, thrust, strict=True)
         }
         data = xr.Dataset({"reading_thrust": ("reading", thrust, {"units": "N/m"})})
-        return data.assign_coords(reading=further), readings_table(attempts_by_letter.values(), thrusts)
+        return data.assign_coords(reading=further), readings_table(fits_by_letter.values(), thrusts)
 
     def _drag(self, speed: float, progress: Progress) -> float:
         progress("towing", 0.0)

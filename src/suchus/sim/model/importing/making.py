@@ -207,7 +207,7 @@ def _spring(joint: Joint, size: Size, mass_fraction: float) -> Spring:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Making:
+class DraftState:
     """A draft in the making, its frame forward, left, up with the origin on the axis."""
 
     plan: BodyPlan
@@ -294,13 +294,13 @@ class Making:
             )
 
 
-def making_of(plan: BodyPlan, words: Words) -> Making:
-    """Return a draft that has not begun."""
+def empty_draft(plan: BodyPlan, words: Words) -> DraftState:
+    """Return the state of a draft before its first hinge: no matches, remarks or notes yet."""
     corners = plan.plane.to_robot_frame(np.concatenate([plan.tree_part(i).corners for i in plan.axis]))
     axis_length = float(np.ptp(corners[:, 0]))
     length = max(axis_length, 0.2 * plan.tree.size)
     max_armature = max(_ARMATURE_RATIO * plan.tree.mass * axis_length**2, 1e-15)
-    return Making(
+    return DraftState(
         plan=plan,
         words=words,
         level=_level(plan),

@@ -64,7 +64,7 @@ def of_body(model: Any, data: Any, body: int) -> tuple[ShapePiece, ...]:
     solid_geoms = [g for g in touching or geoms if model.geom_type[g] not in plain]
     pieces = [_piece(model, data, g) for g in solid_geoms]
     rods = [
-        _shortened(piece, pieces) if model.geom_type[g] == int(kinds.mjGEOM_CYLINDER) else piece
+        _cylinder_as_rod(piece, pieces) if model.geom_type[g] == int(kinds.mjGEOM_CYLINDER) else piece
         for g, piece in zip(solid_geoms, pieces, strict=True)
         if len(piece.ends) == 2
     ]
@@ -87,13 +87,19 @@ def _piece(model: Any, data: Any, geom: int) -> ShapePiece:
     return ShapePiece(ends=(position + turn @ box_centre)[None], half=np.maximum(np.abs(turn) @ half, 1e-5))
 
 
-def _shortened(rod: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
-    """Return a cylinder as a rod whose round ends stay inside it; one that ends in balls is a rod already."""
-    if sum(_is_cap(piece, [rod]) for piece in pieces) >= 2:
-        return rod
-    length = float(np.linalg.norm(rod.ends[1] - rod.ends[0]))
-    inward = (rod.ends[1] - rod.ends[0]) * min(rod.half[0] / length, 0.45)
-    return ShapePiece(ends=np.array([rod.ends[0] + inward, rod.ends[1] - inward]), half=rod.half)
+def _cylinder_as_rod(cylinder: ShapePiece, pieces: list[ShapePiece]) -> ShapePiece:
+    """Return a cylinder as a rod whose round ends stay inside it; one that ends in balls is a rod already.
+
+    Args:
+        cylinder: the cylinder.
+        pieces: all pieces of the body; balls among them may already be the round ends.
+    """
+    if sum(_is_cap(piece, [cylinder]) for piece in pieces) >= 2:
+        return cylinder
+    first_end, last_end = cylinder.ends
+    length = float(np.linalg.norm(last_end - first_end))
+    inward = (last_end - first_end) * min(cylinder.half[0] / length, 0.45)
+    return ShapePiece(ends=np.array([first_end + inward, last_end - inward]), half=cylinder.half)
 
 
 def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:

@@ -115,7 +115,7 @@ def _depth(offsets: np.ndarray, axis: str) -> float:
 def _feet(tree: Tree) -> np.ndarray:
     """Return the ends of the limbs, shape (limb, 3) [m]: of branches with the hinge count that most of them have."""
     leaves = [i for i in range(1, len(tree.parts)) if not tree.children(i)]
-    hinge_counts = {i: sum(len(tree.parts[k].joints) for k in _path(tree, i)) for i in leaves}
+    hinge_counts = {i: sum(len(tree.parts[k].joints) for k in _ancestors_below_root(tree, i)) for i in leaves}
     counts = Counter(hinge_counts.values())
     if not counts:
         return np.zeros((0, 3))
@@ -123,8 +123,8 @@ def _feet(tree: Tree) -> np.ndarray:
     return np.array([_end(tree.parts[i]) for i in leaves if hinge_counts[i] == common_count])
 
 
-def _path(tree: Tree, index: int) -> list[int]:
-    """Return the parts from one up to the root, the root left out."""
+def _ancestors_below_root(tree: Tree, index: int) -> list[int]:
+    """Return the parts from part ``index`` up to the root: ``index`` first, the root left out."""
     path = []
     while index > 0:
         path.append(index)
