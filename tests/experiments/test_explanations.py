@@ -16,12 +16,6 @@ from suchus.experiments.experiment import EXPLANATION, Experiment, templates
 
 """Measures of full forms, by experiment: those of a question's options that no quick form takes among them."""
 ASKED_FOR = {
-    "policies": {
-        "error_excess_still_axis",
-        "error_excess_still_axis_high",
-        "error_excess_still_axis_low",
-        "tracking_error_still_axis",
-    },
     "swim_3d": {"misfit_tail_only_as_taken", "misfit_trunk_and_tail_as_taken", "speed_trunk_and_tail_as_taken"},
 }
 """What is measured only when somebody asks for it, in minutes; test_swim_3d.py looks at it."""

@@ -13,7 +13,7 @@ from suchus.experiments.catalog.fault_knowledge.experiment import (
     ARMS,
     KEPT,
     STATES,
-    Cell,
+    FaultWalk,
     settled_displacement,
     states_of,
 )
@@ -111,7 +111,7 @@ def test_walks_are_equal_until_the_fault_and_then_until_the_robot_knows_of_it():
     searched = read_searches("", CAIMAN, CRAWL)
     cells = [("coordinated", "", "", KEPT), ("coordinated", "limp", "front_pitch", KEPT)]
     cells.append(("coordinated", "limp", "front_pitch", "front_pitch"))
-    runs = [question.walk(Cell(*cell), searched) for cell in cells]
+    runs = [question.walk(FaultWalk(*cell), searched) for cell in cells]
     record = simulate(runs, duration=2.6, timestep=0.01)
     intact, kept, told = (record.servo_angle.isel(run=run).transpose("time", "servo").values for run in range(3))
     fault, known = (np.searchsorted(record.time.values, time + 1e-9) for time in (1.4, 1.8))

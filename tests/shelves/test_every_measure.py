@@ -91,6 +91,43 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         ),
         "_pushing: first_quarter - third_quarter * (1.0, -1.0) the other way round": _SIZE,
     },
+    "swim_free": {
+        **dict.fromkeys(
+            (
+                "flow_measures: record.flow_radius.max() is min",
+                "flow_measures: fin_swims.speed.min() is max",
+                "flow_measures: fin_swims.cost.min() is max",
+                "flow_measures: abs(cycles_record[name]).max(skipna=False) is min",
+                "flow_measures: float(record.flow_time[-1]) - period the other way round",
+                "flow_measures: record.flow_time[-1] is the first",
+                "flow_measures: half.max() / half.mean() the other way round",
+                "flow_measures: half.max() is min",
+                "flow_measures: kind_record.residual_rms.max() is min",
+            ),
+            "In its quick form nothing swims in a flow; test_swim_in_flow.py looks at it.",
+        ),
+        **dict.fromkeys(
+            (
+                "_steered_start: 1.0 / record.attrs['frequency'] the other way round",
+                "_forward_speeds: 1.0 / swim.attrs['frequency'] the other way round",
+            ),
+            "The frequency is 1 Hz.",
+        ),
+        **dict.fromkeys(("measure: min(waters) is max", "measure: max(waters) is min"), _ONE_WATER),
+        **dict.fromkeys(
+            (
+                "measure: whole_swim.tail_tip - whole_swim.centre_of_mass the other way round",
+                "measure: fine - speed['whole'] the other way round",
+                "measures: record.deep_depth.sel(dive=name).values - depth the other way round",
+                "measures: swim.deep_depth.values - depth the other way round",
+            ),
+            _SIZE,
+        ),
+        "measure: means[label].high - means[label].low the other way round": (
+            "In its quick form no swim is settled, and the interval is unknown."
+        ),
+        "measures: far_samples[-1] is the first": "In its quick form no dive has ended.",
+    },
     "joint_loops": {"_loop_errors: float(angle.sel(test='step')[-1]) - step the other way round": _SIZE},
     "displacement": {
         "measure: forward[POLICY] - forward['coordinated'] the other way round": (

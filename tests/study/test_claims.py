@@ -83,7 +83,11 @@ def test_the_shares_are_written_as_the_verdicts_read_them(conducted):
     assert written["digest"] == digest(written["claims"])
     assert (written["samples"], written["became"], written["timestep"]) == (2, {"walked": 2}, 0.01)
     assert written["source"]["runs"] == source_versions()["source"]
+    few = {claim: row for claim, row in written["claims"].items() if "words" in row}
+    assert all(sum(row["words"].values()) == 2 and row["of"] == "" for row in few.values())
     for claim, row in written["claims"].items():
+        if claim in few:
+            continue
         share = Share(claim=claim, **row)
         assert (share.of, share.rule) == ("", RULES[claim].asked)
         one = record.sel(claim=claim)

@@ -25,6 +25,8 @@ MAX_FRAMES = 1500
 """Number of frames on one page [-]."""
 MAX_SIZE = 80_000_000
 """Size of a page at most [byte]; browsers open larger ones slowly."""
+KEY_DIGITS = 16
+"""Digits of the digest by which a browser knows a film again [-]."""
 _MAX_WIDTH = 1280  # of a frame on the page [px]; a click on a smaller picture is as exact as a hand
 _QUALITY = 85  # of the compressed frames [%]
 
@@ -64,8 +66,7 @@ def digitising_page(
             scale = min(1.0, _MAX_WIDTH / size[0])
         elif picture.size != size:
             raise UnusableTracks(
-                f"{film} has frames of {size[0]} x {size[1]} and of {picture.size[0]} x {picture.size[1]} pixels; all "
-                "must be of one size."
+                f"{film} has frames of {_shape(size)} and of {_shape(picture.size)} pixels; all must be of one size."
             )
         data = _compressed(picture, scale)
         digest.update(data)
@@ -80,7 +81,7 @@ def digitising_page(
         raise UnusableTracks(f"{film} has {len(shots)} frame to click on; at least {MIN_FRAMES} are needed.")
     facts = {
         "film": film.name,
-        "key": f"suchus {digest.hexdigest()[:16]}",
+        "key": f"suchus {digest.hexdigest()[:KEY_DIGITS]}",
         "size": size,
         "times": [time for time, _ in shots],
         "points": POINTS,
@@ -125,6 +126,12 @@ def _compressed(picture: Image.Image, scale: float) -> bytes:
     data = BytesIO()
     shown.save(data, "jpeg", quality=_QUALITY)
     return data.getvalue()
+
+
+def _shape(size: tuple[int, int]) -> str:
+    """Return width and height [px] as a text."""
+    width, height = size
+    return f"{width} x {height}"
 
 
 def _source(name: str) -> Markup:

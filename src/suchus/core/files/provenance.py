@@ -41,14 +41,14 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
     }
 
 
-def commit_of(root: Path, *folders: str) -> str:
+def commit_of(root: str | Path, *folders: str) -> str:
     """Return the abbreviated commit of a checkout, with ``+`` behind it where files differ; empty outside of git.
 
     Args:
         root: root of the checkout.
         folders: folders below it whose files are compared with the commit.
     """
-    if not (root / ".git").exists():
+    if not (Path(root) / ".git").exists():
         return ""
     answers = []
     for words in (("rev-parse", "--short=10", "HEAD"), ("status", "--porcelain", "--", *folders)):
