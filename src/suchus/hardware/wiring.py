@@ -24,7 +24,7 @@ def read_wiring(path: str | Path, robot: Robot) -> Wiring:
     if not path_exists(path):
         raise UnreadableFile(
             f"there is no file {path}, which says where each servo hangs: suchus calibrate wiring --robot {robot.name} "
-            "writes one with the servos at hand, and suchus emulate one of an emulated robot."
+            "writes one with the servos at hand, and suchus emulate ROBOT one of an emulated robot."
         )
     wiring: Wiring = parse_table(read_toml(path), Wiring, path.name)
     wiring.ordered(robot)

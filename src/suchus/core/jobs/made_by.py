@@ -9,7 +9,8 @@ from suchus.core.sources import current
 _DECIDING = ("suchus", "python", "mujoco", "numpy", "scipy", "xarray", "h5netcdf")
 LAND_SOURCES = (
     "article/paper", "core/catalog.py", "core/checks.py", "core/files", "core/kinds.py", "core/physics.py",
-    "core/plate_table.py", "core/reading.py", "core/rotation.py", "core/sources.py", "core/water_table.py", "robot", "sim",
+    "core/plate_table.py", "core/reading.py", "core/rotation.py", "core/sources.py", "core/water_table.py",
+    "robot", "sim",
     *(f"experiments/study/{module}.py" for module in ("arm", "chunk", "measures", "plan", "study")),
 )  # fmt: skip
 """Paths whose code decides the numbers of a run on land."""
