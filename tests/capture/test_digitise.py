@@ -111,6 +111,22 @@ def test_the_command_writes_the_page_and_says_what_comes_next(film, tmp_path, mo
     assert not (tmp_path / "other.html").exists()
 
 
+def test_the_command_takes_a_folder_and_says_what_is_no_film(film, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "shots").mkdir()
+    for i in range(2):
+        Image.new("L", (8, 8), 255 * i).save(tmp_path / "shots" / f"{i}.png")
+    assert main(["capture", "shots", "--digitise", "shots.html", "--fps", "25"]) == 0
+    assert facts_of((tmp_path / "shots.html").read_text())["times"] == [0.0, 0.04]
+    assert main(["capture", "shots"]) == 2
+    assert "a folder of its pictures" in capsys.readouterr().err
+    (tmp_path / "robot.toml").write_text("name = 'x'")
+    assert main(["capture", "robot.toml", "--digitise", "other.html"]) == 2
+    assert "robot.toml is no film; a video (.mp4" in capsys.readouterr().err
+    assert main(["capture", "missing.gif", "--digitise", "other.html"]) == 2
+    assert "there is no file missing.gif" in capsys.readouterr().err
+
+
 @pytest.fixture(scope="module")
 def browser():
     playwright = pytest.importorskip("playwright.sync_api")

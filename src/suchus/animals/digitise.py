@@ -12,7 +12,7 @@ from PIL import Image
 
 from suchus.animals.capture import UnusableTracks
 from suchus.animals.capture.tracks import GAIT_KEYPOINTS
-from suchus.animals.pictures import FilmFrame, frames
+from suchus.animals.pictures import MOVING, VIDEOS, FilmFrame, frames, is_film
 from suchus.core.files import versions
 from suchus.robot.design import LEGS
 from suchus.visual.replay.page import embed_json, environment
@@ -54,6 +54,11 @@ def digitising_page(
         UnreadableFile: the film cannot be read.
         UnusableTracks: it does not say its times and no rate is given, or has too few or too many frames.
     """
+    if film.exists() and not is_film(film):
+        raise UnusableTracks(
+            f"{film} is no film; a video ({', '.join(VIDEOS)}), a file of several pictures ({', '.join(MOVING)}) or a "
+            "folder of pictures is needed."
+        )
     if every < 1:
         raise UnusableTracks(f"every is {every}; 1 (every frame) or more is needed.")
     if rate is not None and not rate > 0.0:

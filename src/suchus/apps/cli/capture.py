@@ -137,8 +137,8 @@ def capture(words: Sequence[str]) -> int:
         return _write_digitising_page(options, options.digitise)
     if is_film(options.tracks):
         raise BadCommand(
-            f"{options.tracks} is a film, and this command reads tracked keypoints. --digitise points.html makes a "
-            "page on which you click them; DeepLabCut and SLEAP track them."
+            f"{options.tracks} is a film or a folder of its pictures, and this command reads tracked keypoints. "
+            "--digitise points.html makes a page on which you click them; DeepLabCut and SLEAP track them."
         )
     output = options.out or (None if options.tables or options.forces else Path("captured.toml"))
     if options.video and not options.tables:

@@ -57,7 +57,7 @@ class Subcommand:
     function: str
     """``module:function`` that takes the remaining words and returns the exit code."""
     first_word: str = ""
-    """Kind of what the first word names: experiment, robot, gait, or file; empty where it is not checked early."""
+    """Kind of what the first word names: experiment, robot, gait, file, file or folder; empty: not checked early."""
     other_words: tuple[str, ...] = ()
     """Words that may stand in the place of that name."""
     shelf_options: tuple[str, ...] = ()
@@ -104,7 +104,7 @@ COMMANDS = (
         "TRACKS [--out FILE.toml]",
         "read a gait from tracked keypoints",
         "suchus.apps.cli.capture:capture",
-        first_word="file",
+        first_word="file or folder",
         shelf_options=("robot",),
         output="gait",
     ),

@@ -100,8 +100,10 @@ def _check_first(command: Subcommand, words: Sequence[str]) -> None:
         return
     if word in command.other_words:
         return
-    if command.first_word == "file":
+    if command.first_word == "file" or (command.first_word == "file or folder" and not Path(word).is_dir()):
         check_file(Path(word))
+    elif command.first_word == "file or folder":
+        return
     else:
         _check_name(command.first_word, word)
 

@@ -22,6 +22,8 @@ _FLAT_ARC = 1.3
 """The same where the links lie nearly in one line [-]."""
 _LEAST_ANGLE = 1e-6
 """Angle below which none is drawn [rad]."""
+_LEAST_LENGTH = 1e-6
+"""Length of a link in the picture below which none is written [mm]."""
 _COLOURS = {"X": COLOURS["limbs_only"], "Y": COLOURS["tail_drag"], "Z": COLOURS["ours"]}
 
 
@@ -110,7 +112,7 @@ def _draw_length(ax: Axes, i: int, origins: np.ndarray, *, is_flat: bool) -> Non
     """
     link = origins[i + 1] - origins[i]
     length = float(np.hypot(*link))
-    if length < _LEAST_ANGLE:
+    if length < _LEAST_LENGTH:
         return
     below = np.array([link[1], -link[0]]) / length
     aside = 15.0 * (below if (below[1] <= 0) != is_flat else -below)

@@ -3,7 +3,7 @@
 from suchus.article.verdict.judging import Examples
 from suchus.article.verdict.rule import Clause, Rule, SmallestEffect
 
-_LEAST_GAIN = SmallestEffect(size=0.02, why="four times what half the time step changes in the speed")
+_LEAST_GAIN = SmallestEffect(size=0.02, why="less than a fiftieth of the speed is of no use to a swimmer")
 _OF_ANIMALS = "Said of crocodiles; no design of a robot says how they swim."
 
 RULES = (
