@@ -161,6 +161,24 @@ class SwimSetting:
         )
         return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
 
+    def grid_above_floor(self, length: float, swing: float, height: float, floor: float) -> flow.Grid:
+        """Return the cells around a whole body in space that swims in its plane above a floor.
+
+        Args:
+            length: length of the body [m].
+            swing: greatest displacement to a side [m].
+            height: greatest half-height of the body [m].
+            floor: depth of the floor below the middle of the body [m].
+        """
+        cell, lateral_reach = length / self.cells, swing / length + _DRIFT_MARGIN + self.beside
+        return flow.Grid.covering(
+            (-MARGIN_AHEAD * length, (1.0 + self.behind) * length),
+            (-lateral_reach * length, lateral_reach * length),
+            (-floor, height + MARGIN_ABOVE * length),
+            cell=cell,
+            sides=flow.Sides(low=flow.Wall()),
+        )
+
     def check_thickness(self, robot: Robot, shape: flow.Shape | flow.SpaceShape) -> None:
         """Refuse cells in space so coarse that a robot is nowhere thick enough for them.
 
