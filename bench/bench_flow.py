@@ -28,15 +28,14 @@ from suchus.swimming.water.swim_setup import ResolvedSwim
 PIECES = (
     (
         water,
-        "immerse add_immersion_impulse dilatation_work add_contents mean_residual residual correct fastest fill "
-        "fill_source",
+        "immerse add_immersion_impulse dilatation_work add_contents residual correct fastest fill fill_source",
     ),
     (water.Fluid, "step place _measure _clear _advance"),
     (poisson, "solve"),
     (multigrid, "coarsen copy_coefficients"),
     (midline, "paint section_motions"),
     (midline.Midline, "markers"),
-    (farfield, "gather induce"),
+    (farfield, "induce"),
     (border.Border, "prepare update_induced fill"),
     (log.Log, "reactions"),
     (simulation, "sample"),
@@ -272,7 +271,8 @@ def tell_solve(w, per_cell):
     down, up, dots, first, second = (
         threaded(part.py_func)
         for part in (
-            multigrid._descend_threaded, multigrid._ascend_threaded, poisson._measure, poisson._first_step,
+            multigrid._descend_threaded, multigrid._ascend_threaded, poisson._write_slab_products,
+            poisson._first_step,
             poisson._step
         )
     )  # fmt: skip

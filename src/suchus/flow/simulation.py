@@ -115,6 +115,7 @@ class Simulation(Fields):
         self.ndim = setup.grid.ndim
         self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
         self._bodies = [_remembering(body) for body in setup.bodies]
+        self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         self._threads = threads.count() if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
@@ -131,6 +132,8 @@ class Simulation(Fields):
         self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
+        self._poses: list[Pose] = []  # of bodies at the end of the last step, in the frame of the grid
+        self._fastest_marker_speed: tuple[list[Markers], float] | None = None
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
@@ -207,6 +210,8 @@ class Simulation(Fields):
 
     def _in_frame(self, pose: Pose) -> Pose:
         """Return a pose of the world frame in the frame of the grid."""
+        if self.setup.follow is None:  # the grid stays where it is
+            return pose
         position, velocity = (
             tuple(a - b for a, b in zip(vector, frame, strict=True))
             for vector, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
@@ -348,8 +353,10 @@ class Simulation(Fields):
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
-        poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not self._are_static
+        if moving or not self._is_placed:
+            self._poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
+        poses = self._poses
         has_new_places = moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE
         if has_new_places:
             self.water.offset = offset
@@ -370,19 +377,24 @@ class Simulation(Fields):
                 ]
             )
         imposed_speed = self.water.imposed(time)
-        marker_speeds = [_fastest_marker(m) for m in self._outlines]  # a body may just start to move
-        self._speed = max([self._speed, length(stream), imposed_speed, *marker_speeds])
+        body_speed = self._body_speed()  # a body may just start to move
+        self._speed = max(self._speed, length(stream), imposed_speed, body_speed)
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, stream, tuple(map(float, push)), limits, time)
         self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
         contents = self._log.region_contents
-        self._latest_step = _LatestStep(
-            dt, poses, push, drift, contents, max(marker_speeds, default=0.0), imposed_speed
-        )
+        self._latest_step = _LatestStep(dt, poses, push, drift, contents, body_speed, imposed_speed)
         self._note(self._latest_step, has_new_places=has_new_places)
         self._log.control(self.water, dt, push)
+
+    def _body_speed(self) -> float:
+        """Return the fastest speed of the bodies' surfaces in the frame of the grid [m/s]."""
+        if self._fastest_marker_speed is None or self._fastest_marker_speed[0] is not self._outlines:
+            speed = max(map(_fastest_marker, self._outlines), default=0.0)
+            self._fastest_marker_speed = self._outlines, speed
+        return self._fastest_marker_speed[1]
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
         """Return the contact force and torque on each body in the middle of the next step, by name [N/m, N].
@@ -588,8 +600,7 @@ class Simulation(Fields):
         ]
         self.clear_shape_cache()
         self._log.rows.pop()
-        body_speed = max(map(_fastest_marker, self._outlines), default=0.0)
-        self._latest_step = self._latest_step._replace(body_speed=body_speed)
+        self._latest_step = self._latest_step._replace(body_speed=self._body_speed())
         self._note(self._latest_step, has_new_places=True)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
@@ -614,10 +625,10 @@ class Simulation(Fields):
         Raises:
             UnknownName: there is no such body.
         """
-        names = [b.name for b in self._bodies]
-        if name not in names:
-            raise UnknownName("body", name, names or ("none",))
-        return names.index(name)
+        number = self._numbers.get(name)
+        if number is None:
+            raise UnknownName("body", name, list(self._numbers) or ("none",))
+        return number
 
     def clear_shape_cache(self) -> None:
         """Clear the cached midlines of all bodies, because the functions behind them have changed."""
@@ -674,8 +685,8 @@ class Simulation(Fields):
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
         self.clear_shape_cache()
-        poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
-        self.water.place(self._bodies, poses, self.time)
+        self._poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+        self.water.place(self._bodies, self._poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
         self._is_placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
