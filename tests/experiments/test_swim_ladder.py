@@ -200,7 +200,7 @@ def slices(cycles):
 
 def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
     record = run_ladder(
-        replace(SWIMMING.quick(), cycles=4).ladder_setting(), lambda stage, share: None, slices=slices(4)
+        replace(SWIMMING.quick(), cycles=4).ladder_setting(), lambda stage, share: None, slices=lambda _: slices(4)
     )
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"slice_taken", "space"}
@@ -234,7 +234,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
 
     monkeypatch.setattr(ladder, "swum_in_sections", sinks)
     climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).ladder_setting()
-    record = run_ladder(climb, lambda stage, share: None, slices=slices(2))
+    record = run_ladder(climb, lambda stage, share: None, slices=lambda _: slices(2))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"sections", "slice_taken", "space"}
     assert unable["slice_taken"] == unable["sections"]
