@@ -64,10 +64,10 @@ class Surface:
         m, ndim = self.markers, len(self.shear)
         planes = np.array(ROTATION_PLANES[ndim])
         sums = np.zeros(2 * ndim + len(planes) + 1)
+        normals, points, velocities = (np.ascontiguousarray(a) for a in (m.normals, m.points, m.velocities))
         add_loads(
-            sums, self.pressure, self.shear, m.weight, *(np.ascontiguousarray(a) for a in (m.normals, m.points)),
-            np.ascontiguousarray(m.velocities), np.array(reference_point), planes,
-        )  # fmt: skip
+            sums, self.pressure, self.shear, m.weight, normals, points, velocities, np.array(reference_point), planes
+        )
         numbers = sums.tolist()
         return Load(
             pressure=tuple(numbers[:ndim]), shear=tuple(numbers[ndim : 2 * ndim]), moment=tuple(numbers[2 * ndim : -1]),
@@ -94,11 +94,13 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
         density: density of the water [kg/m^3].
     """
     pressure, shear = np.empty(markers.weight.size), np.empty(markers.points.shape)
+    points, normals, velocities, spins = (
+        np.ascontiguousarray(a) for a in (markers.points, markers.normals, markers.velocities, markers.spins)
+    )
     sample_skin(
-        water.p.reshape(-1), water.velocity.reshape(water.ndim, -1), steps_of(water.p),
-        *(np.ascontiguousarray(a) for a in (markers.points, markers.normals, markers.velocities, markers.spins)),
-        np.array(water.grid.origin), water.grid.cell, np.array(ROTATION_PLANES[water.ndim]), water.level, density,
-        density * float(water.nu), pressure, shear,
+        water.p.reshape(-1), water.velocity.reshape(water.ndim, -1), steps_of(water.p), points, normals, velocities,
+        spins, np.array(water.grid.origin), water.grid.cell, np.array(ROTATION_PLANES[water.ndim]), water.level,
+        density, density * float(water.nu), pressure, shear,
     )  # fmt: skip
     return Surface(markers=markers, pressure=pressure, shear=shear)
 

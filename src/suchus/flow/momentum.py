@@ -450,8 +450,11 @@ def reaction(
     ndim = len(origin)
     shape = impulse.shape[:-1]
     loads = np.empty((prod(shape), ndim + len(ROTATION_PLANES[ndim]) + 1))
+    impulse, start_contents, end_contents = (
+        sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents)
+    )
     fill_reaction(
-        loads, *(sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents)), dt, np.array(push),
+        loads, impulse, start_contents, end_contents, dt, np.array(push),
         (reference_point - np.array(origin)) / h, np.array(ROTATION_PLANES[ndim]), h, density,
     )  # fmt: skip
     loads = loads.reshape(*shape, -1)
