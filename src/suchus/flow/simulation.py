@@ -25,11 +25,11 @@ from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
 from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
-from suchus.flow.pose import Pose, length, speeds
+from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
@@ -57,7 +57,9 @@ OFFSET_TOLERANCE = 1e-3
 
 
 def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is cached for each time within a step."""
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step."""
+    if isinstance(body, Body) and not isinstance(body.motion, Pose):
+        body = replace(body, motion=CachedMotion(body.motion))
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -67,7 +69,8 @@ def _remembering(body: AnyBody) -> AnyBody:
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    return float(speeds(markers.velocities).max())
+    speed: float = max_speed(np.ascontiguousarray(markers.velocities), np.zeros(len(markers.velocities)))
+    return speed
 
 
 Watcher = Callable[["Simulation"], None]
@@ -631,8 +634,10 @@ class Simulation(Fields):
         return number
 
     def clear_shape_cache(self) -> None:
-        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
+        """Clear the cached poses and midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
+            if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
+                body.motion.clear()
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
                 spine.clear()
