@@ -43,6 +43,9 @@ from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resti
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
 
+MIN_THREAD_CELLS = 16_384
+"""Cells for each thread of the kernels: on fewer, threads wait for each other longer than they compute [-]."""
+
 ADDED_MASS_INTERVAL = 8
 """Steps between two computations of a free body's added mass [-]."""
 
@@ -100,7 +103,7 @@ class Simulation(Fields):
 
         Args:
             setup: what is simulated.
-            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+            thread_count: threads of the kernels; None takes those of ``threads.count``, and fewer for a small grid [-].
 
         Raises:
             InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
@@ -120,7 +123,9 @@ class Simulation(Fields):
         self._bodies = [_remembering(body) for body in setup.bodies]
         self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
-        self._threads = threads.count() if thread_count is None else thread_count
+        cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
+        max_threads = max(1, cells // MIN_THREAD_CELLS)
+        self._threads = min(threads.count(), max_threads) if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
         self._last_step = 0.0
         self._frame_velocity_at(0.0)
