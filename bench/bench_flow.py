@@ -407,12 +407,11 @@ def tell_speed(label, make, cells, steps, far):
 
 
 def tell_ratio(found):
-    """Print the speed of the small plane flow over that of the large one, both of this run; see ``found`` of ``main``."""
+    """Print the speed of the small plane flow over that of the large one, both of this run."""
     rates = [found.get(f"eel_{cells}_1") for cells in FLOWS[0][2]]
     if len(rates) > 1 and all(rates):
-        print(
-            f"moving eel, one thread: the smaller grid has {rates[0] / rates[1]:.2f} of the larger one's rate (asked: 0.9)"
-        )
+        ratio = rates[0] / rates[1]
+        print(f"moving eel, one thread: the smaller grid has {ratio:.2f} of the rate of the larger one (asked: 0.9)")
 
 
 FLOWS = (

@@ -5,6 +5,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from suchus.flow.compiled import compiled
 
@@ -51,6 +52,11 @@ class Markers:
             normals=self.normals[:, mask], spins=self.spins[:, mask],
             part_index=None if self.part_index is None else self.part_index[mask], station=station, side=side,
         )  # fmt: skip
+
+
+def kernel_array(values: ArrayLike) -> np.ndarray:
+    """Return a copy for the kernels, of one type: they are compiled anew for strided and for read-only arrays."""
+    return np.array(values, float, order="C")
 
 
 @compiled

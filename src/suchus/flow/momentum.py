@@ -16,7 +16,7 @@ from math import prod
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, kernel_part, signed
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.slab import row_length
 
@@ -340,10 +340,9 @@ def skin_contents(
     parts = np.zeros(markers.weight.size, np.int64)
     if count > 1 and markers.part_index is not None:
         parts = markers.part_index.astype(np.int64)
-    add_skin_contents(
-        sums, *(np.ascontiguousarray(a) for a in (markers.points, markers.velocities, markers.weight)), parts,
-        np.array(origin), h, offset, np.array(ROTATION_PLANES[len(origin)]),
-    )  # fmt: skip
+    points, velocities, weight = (kernel_array(a) for a in (markers.points, markers.velocities, markers.weight))
+    planes = np.array(ROTATION_PLANES[len(origin)])
+    add_skin_contents(sums, points, velocities, weight, parts, np.array(origin), h, offset, planes)
     return sums
 
 
@@ -478,9 +477,9 @@ def reaction(
     ndim = len(origin)
     shape = impulse.shape[:-1]
     loads = np.empty((prod(shape), ndim + len(ROTATION_PLANES[ndim]) + 1))
-    fill_reaction(
-        loads, *(sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents)), dt, np.array(push),
-        (reference_point - np.array(origin)) / h, np.array(ROTATION_PLANES[ndim]), h, density,
-    )  # fmt: skip
+    part_impulse, start, end = (sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents))
+    centre = (reference_point - np.array(origin)) / h
+    planes = np.array(ROTATION_PLANES[ndim])
+    fill_reaction(loads, part_impulse, start, end, dt, np.array(push), centre, planes, h, density)
     loads = loads.reshape(*shape, -1)
     return Reaction(force=loads[..., :ndim], moment=loads[..., ndim:-1], power=loads[..., -1])

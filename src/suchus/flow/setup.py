@@ -15,7 +15,7 @@ from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.markers import Markers, extent, max_speed
+from suchus.flow.markers import Markers, extent, kernel_array, max_speed
 from suchus.flow.nest import patch_sides
 from suchus.flow.resolution import (
     MAX_FORCE_ERROR,
@@ -320,8 +320,8 @@ class Setup:
         Raises:
             InvalidDesign: the estimate is above ``MAX_FORCE_ERROR``; the message names a sufficient cell.
         """
-        length = extent(np.ascontiguousarray(markers.points))
-        speed = max_speed(np.ascontiguousarray(markers.velocities), np.array(stream, float))
+        length = extent(kernel_array(markers.points))
+        speed = max_speed(kernel_array(markers.velocities), np.array(stream, float))
         cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),

@@ -134,9 +134,9 @@ class Solid(Shape):
         row, shape = pose_row(pose), (y.size, x.size)
         body_points, field = np.empty((2, *shape)), np.empty((4, *shape))
         to_body_points(body_points, x, y, row)
-        d, *normal = (_whole(a, shape) for a in self.distance(*body_points))
-        to_world_field(field, *normal, x, y, row)
-        return Field(d, *field, np.full(shape, np.inf))
+        d, nx, ny = (_whole(a, shape) for a in self.distance(*body_points))
+        to_world_field(field, nx, ny, x, y, row)
+        return Field(d, field[0], field[1], field[2], field[3], np.full(shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""

@@ -25,7 +25,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
-from suchus.flow.markers import Markers, max_speed
+from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
 from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
@@ -72,7 +72,7 @@ def _remembering(body: AnyBody) -> AnyBody:
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    speed: float = max_speed(np.ascontiguousarray(markers.velocities), np.zeros(len(markers.velocities)))
+    speed: float = max_speed(kernel_array(markers.velocities), np.zeros(len(markers.velocities)))
     return speed
 
 
