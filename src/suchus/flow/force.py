@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, kernel_part
 from suchus.flow.grid import Grid
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.water import Fluid
 
@@ -64,10 +64,9 @@ class Surface:
         m, ndim = self.markers, len(self.shear)
         planes = np.array(ROTATION_PLANES[ndim])
         sums = np.zeros(2 * ndim + len(planes) + 1)
-        normals, points, velocities = (np.ascontiguousarray(a) for a in (m.normals, m.points, m.velocities))
-        add_loads(
-            sums, self.pressure, self.shear, m.weight, normals, points, velocities, np.array(reference_point), planes
-        )
+        weight, normals, points, velocities = (kernel_array(a) for a in (m.weight, m.normals, m.points, m.velocities))
+        pressure, shear = kernel_array(self.pressure), kernel_array(self.shear)
+        add_loads(sums, pressure, shear, weight, normals, points, velocities, kernel_array(reference_point), planes)
         numbers = sums.tolist()
         return Load(
             pressure=tuple(numbers[:ndim]), shear=tuple(numbers[ndim : 2 * ndim]), moment=tuple(numbers[2 * ndim : -1]),
@@ -95,7 +94,7 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
     """
     pressure, shear = np.empty(markers.weight.size), np.empty(markers.points.shape)
     points, normals, velocities, spins = (
-        np.ascontiguousarray(a) for a in (markers.points, markers.normals, markers.velocities, markers.spins)
+        kernel_array(a) for a in (markers.points, markers.normals, markers.velocities, markers.spins)
     )
     sample_skin(
         water.p.reshape(-1), water.velocity.reshape(water.ndim, -1), steps_of(water.p), points, normals, velocities,

@@ -91,7 +91,7 @@ def moment1(distance):
 
 
 @threaded
-def fill(distance, normal, thickness, mu0, mu1):
+def fill(distance, normal, thickness, h, offset, mu0, mu1):
     """Fill the moments of the kernel at points.
 
     The kernel sees both surfaces of a thin body. So the fraction that a tail of any thickness takes from the cells
@@ -99,17 +99,19 @@ def fill(distance, normal, thickness, mu0, mu1):
     it, and the force shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
 
     Args:
-        distance: signed distance of each point from the surface [cells].
+        distance: signed distance of each point from the surface [m].
         normal: outward normal, shape (axis, point).
-        thickness: thickness of the body at the nearest point of the surface [cells].
+        thickness: thickness of the body at the nearest point of the surface [m].
+        h: side of a cell [m].
+        offset: offset of the wall outside the surface [cells].
         mu0: fluid fraction to write, shape (point,).
         mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """
     for n in prange((distance.size + POINTS - 1) // POINTS):
         block = signed(n)
         for k in range(block * POINTS, min((block + 1) * POINTS, distance.size)):
-            near_distance = distance[k]
-            far_distance = -thickness[k] - near_distance
+            near_distance = distance[k] / h - offset
+            far_distance = -(thickness[k] / h + 2.0 * offset) - near_distance
             mu0[k] = min(max(moment0(near_distance) + moment0(far_distance), MIN_FLUID_FRACTION), 1.0)
             first_moment = 0.5 * (moment1(near_distance) - moment1(far_distance))
             for d in range(normal.shape[0]):

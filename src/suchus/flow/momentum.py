@@ -16,7 +16,7 @@ from math import prod
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, kernel_part, signed
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.slab import row_length
 
@@ -336,18 +336,45 @@ def skin_contents(
         h: cell [m].
         count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
     """
-    ndim = len(origin)
-    w = offset * markers.weight / h ** (ndim - 1)
-    position = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
-    v = markers.velocities
-    square = v[0] ** 2 + v[1] ** 2
-    if ndim == 3:
-        square = square + v[2] ** 2
-    angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[ndim])
-    columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
-    if count == 1 or markers.part_index is None:
-        return (w * np.array(columns)).sum(axis=1)[None]
-    return np.stack([np.bincount(markers.part_index, w * column, count) for column in columns], axis=1)
+    sums = np.zeros((count, contents_of(len(origin))))
+    parts = np.zeros(markers.weight.size, np.int64)
+    if count > 1 and markers.part_index is not None:
+        parts = markers.part_index.astype(np.int64)
+    points, velocities, weight = (kernel_array(a) for a in (markers.points, markers.velocities, markers.weight))
+    planes = np.array(ROTATION_PLANES[len(origin)])
+    add_skin_contents(sums, points, velocities, weight, parts, np.array(origin), h, offset, planes)
+    return sums
+
+
+@compiled
+def add_skin_contents(sums, points, velocities, weight, parts, origin, h, offset, planes):
+    """Add the contents of the layer of water along a skin; see ``skin_contents``.
+
+    Args:
+        sums: shape (part, ``contents_of``), to add to.
+        points: positions of the markers, shape (axis, marker) [m].
+        velocities: shape (axis, marker) [m/s].
+        weight: length or area of each marker, shape (marker,) [m, m^2].
+        parts: part that each marker belongs to, shape (marker,).
+        origin: corner of the grid, shape (axis,) [m].
+        h: cell [m].
+        offset: offset of the wall [cells].
+        planes: the two axes across each axis of rotation, shape (turn, 2).
+    """
+    ndim, turns = points.shape[0], planes.shape[0]
+    factor, energy = offset / h ** (ndim - 1), ndim + turns
+    for k in range(weight.size):
+        w, m, square = factor * weight[k], parts[k], 0.0
+        for d in range(ndim):
+            sums[m, d] += w * velocities[d, k]
+            square += velocities[d, k] ** 2
+            sums[m, energy + 2 + d] += w * (points[d, k] - origin[d]) / h
+        for n in range(turns):
+            a, b = planes[n, 0], planes[n, 1]
+            arm_a, arm_b = (points[a, k] - origin[a]) / h, (points[b, k] - origin[b]) / h
+            sums[m, ndim + n] += w * (arm_a * velocities[b, k] - arm_b * velocities[a, k])
+        sums[m, energy] += 0.5 * w * square
+        sums[m, energy + 1] += w
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -450,12 +477,9 @@ def reaction(
     ndim = len(origin)
     shape = impulse.shape[:-1]
     loads = np.empty((prod(shape), ndim + len(ROTATION_PLANES[ndim]) + 1))
-    impulse, start_contents, end_contents = (
-        sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents)
-    )
-    fill_reaction(
-        loads, impulse, start_contents, end_contents, dt, np.array(push),
-        (reference_point - np.array(origin)) / h, np.array(ROTATION_PLANES[ndim]), h, density,
-    )  # fmt: skip
+    part_impulse, start, end = (sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents))
+    centre = (reference_point - np.array(origin)) / h
+    planes = np.array(ROTATION_PLANES[ndim])
+    fill_reaction(loads, part_impulse, start, end, dt, np.array(push), centre, planes, h, density)
     loads = loads.reshape(*shape, -1)
     return Reaction(force=loads[..., :ndim], moment=loads[..., ndim:-1], power=loads[..., -1])

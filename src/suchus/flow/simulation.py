@@ -25,11 +25,11 @@ from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
 from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
-from suchus.flow.pose import Pose, length, speeds
+from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
@@ -42,6 +42,9 @@ from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
+
+MIN_THREAD_CELLS = 16_384
+"""Cells for each thread of the kernels: on fewer, threads wait for each other longer than they compute [-]."""
 
 ADDED_MASS_INTERVAL = 8
 """Steps between two computations of a free body's added mass [-]."""
@@ -57,7 +60,9 @@ OFFSET_TOLERANCE = 1e-3
 
 
 def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is cached for each time within a step."""
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step."""
+    if isinstance(body, Body) and not isinstance(body.motion, Pose):
+        body = replace(body, motion=CachedMotion(body.motion))
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -67,7 +72,8 @@ def _remembering(body: AnyBody) -> AnyBody:
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    return float(speeds(markers.velocities).max())
+    speed: float = max_speed(kernel_array(markers.velocities), np.zeros(len(markers.velocities)))
+    return speed
 
 
 Watcher = Callable[["Simulation"], None]
@@ -97,7 +103,7 @@ class Simulation(Fields):
 
         Args:
             setup: what is simulated.
-            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+            thread_count: threads of the kernels; None takes those of ``threads.count``, and fewer for a small grid [-].
 
         Raises:
             InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
@@ -117,7 +123,9 @@ class Simulation(Fields):
         self._bodies = [_remembering(body) for body in setup.bodies]
         self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
-        self._threads = threads.count() if thread_count is None else thread_count
+        cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
+        max_threads = max(1, cells // MIN_THREAD_CELLS)
+        self._threads = min(threads.count(), max_threads) if thread_count is None else thread_count
         self._log, self._watch = Log(setup), Watch(setup)
         self._last_step = 0.0
         self._frame_velocity_at(0.0)
@@ -631,8 +639,10 @@ class Simulation(Fields):
         return number
 
     def clear_shape_cache(self) -> None:
-        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
+        """Clear the cached poses and midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
+            if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
+                body.motion.clear()
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
                 spine.clear()

@@ -370,8 +370,9 @@ class Fluid:
 
     def _widening(self, bodies: list[AnyBody]) -> None:
         """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
-        self.widening = np.zeros_like(self.source)
-        self._widens = not all(body.shape.rigid for body in bodies)
+        was_wide, self._widens = self._widens, not all(body.shape.rigid for body in bodies)
+        if self._widens or was_wide or self.widening.shape != self.source.shape:
+            self.widening = np.zeros_like(self.source)
         if self._widens:
             widening, mean, mu0 = (self._flat(a) for a in (self.widening, self.mean, self.mu0))
             fill_source(widening, mean, mu0, self._layout[0], self._near_layout, self.inner)
@@ -395,13 +396,14 @@ class Fluid:
         for c, points in enumerate(self._points):
             f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
             self.overlap = max(self.overlap, overlap)
-            distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
-            mu0: np.ndarray = np.empty(distance.size, self.dtype)
-            normal = np.empty((self.ndim, distance.size))
+            mu0: np.ndarray = np.empty(f.distance.size, self.dtype)
+            normal = np.empty((self.ndim, mu0.size))
             for d, component in enumerate(f.normal):
                 normal[d] = component.ravel()
-            fill(distance.ravel(), normal, thickness.ravel(), mu0, self.mu1[c].reshape(self.ndim, -1))
-            self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
+            fill(
+                f.distance.ravel(), normal, f.thickness.ravel(), h, self.offset, mu0, self.mu1[c].reshape(self.ndim, -1)
+            )  # fmt: skip
+            self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(f.distance.shape)
             self.b[c] = f.velocity[c]
         for body, pose in zip(bodies, poses, strict=True):
             self._close(body.shape, pose, time, self._first_centre)
