@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from suchus.apps.report.beside import compare_with_animals
 from suchus.apps.report.outcome_page import MARKS, PAGE, verdict_rows, write_outcome_page
-from suchus.apps.report.rendering import embedded, number, quantity, render, tied
 from suchus.apps.report.result import Failure, Result
 from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.core.errors import SuchusError
@@ -25,6 +24,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics.energy import METRES
 from suchus.visual import figures
+from suchus.visual.pages import embedded, number, quantity, render
 
 _MIN_GIST_LENGTH = 60
 """Letters that say something [-]."""
@@ -69,7 +69,7 @@ def render_page(results: Sequence[Result], failures: Sequence[Failure], page_fol
         page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
     """
     page_folder = None if page_folder is None else Path(page_folder)
-    return render("page.html", page_folder, _content(results, failures), tied=tied, gist=_gist)
+    return render("report.html", page_folder, gist=_gist, **_content(results, failures))
 
 
 def _gist(text: str) -> str:
@@ -99,6 +99,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     return {
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
+        "thumbnails": {result.name: result.pictures[0].thumbnail for result in results if result.pictures},
         "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,
         "authors": AUTHORS,
@@ -118,7 +119,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": compare_with_animals(robot, answered),
         "metres": metres(answered),
-        "shown": next((result for result in results if result.replays), None),
+        "shown": max((result for result in results if result.replays), key=_headline_count, default=None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
         "others": robot_counts,
@@ -129,6 +130,11 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "misprints": tuple(ERRATA.values()) if is_article_robot else (),
         "versions": versions(),
     }
+
+
+def _headline_count(result: Result) -> int:
+    """Return how many of the claims that the page begins with a result judges [-]."""
+    return sum(verdict["claim"] in HEADLINE for verdict in result.outcome["verdicts"])
 
 
 def _counts(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, int]:
