@@ -48,12 +48,13 @@ _COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compa
 
 
 @compiled
-def compare_rates(excess, doubt, declared_rate, measured_rate, arms, kinds, max_speed, distance_speed):
+def compare_rates(excess, doubt, sizes, declared_rate, measured_rate, arms, kinds, max_speed, distance_speed):
     """Write the differences of declared and measured rates over those that are allowed.
 
     Args:
         excess: difference over what ``RATE_TOLERANCE`` allows, shape (coordinate,), to write to [-].
         doubt: difference over what ``DOUBTFUL_RATE_TOLERANCE`` allows, to write to [-].
+        sizes: fastest speed of each kind of coordinate, to add to [m/s].
         declared_rate: shape (coordinate,) [m/s, rad/s].
         measured_rate: shape (coordinate,) [m/s, rad/s].
         arms: see ``CoordinateSeries``.
@@ -64,12 +65,13 @@ def compare_rates(excess, doubt, declared_rate, measured_rate, arms, kinds, max_
     Returns:
         The fastest speed with this one [m/s], and the largest of both ratios [-].
     """
-    sizes = np.zeros(kinds.max() + 1)
+    fastest = 0.0
     for k in range(arms.size):
         speed = max(abs(declared_rate[k]), abs(measured_rate[k])) * arms[k]
         sizes[kinds[k]] = max(sizes[kinds[k]], speed)
-    max_speed = max(max_speed, sizes.max())
-    min_speed = max(MIN_RATE_RATIO * sizes.max(), RATE_TOLERANCE * MIN_SPEED_RATIO * max_speed, distance_speed)
+        fastest = max(fastest, speed)
+    max_speed = max(max_speed, fastest)
+    min_speed = max(MIN_RATE_RATIO * fastest, RATE_TOLERANCE * MIN_SPEED_RATIO * max_speed, distance_speed)
     max_excess, max_doubt = 0.0, 0.0
     for k in range(arms.size):
         error, size = abs(declared_rate[k] - measured_rate[k]) * arms[k], sizes[kinds[k]]
@@ -401,9 +403,9 @@ class Consistency:
         span = _COMPARISON_FRACTION * dt
         series = self.source.sample([time + k * span for k in range(3)])
         declared_rate, measured_rate = series.rates[0], (4 * series.coordinates[1] - series.coordinates[2]) / (2 * span)
-        excess, doubt = np.empty((2, series.arms.size))
+        excess, doubt, sizes = np.zeros((3, series.arms.size))
         self.max_speed, max_excess, max_doubt = compare_rates(
-            excess, doubt, declared_rate, measured_rate, series.arms, series.kinds, self.max_speed,
+            excess, doubt, sizes, declared_rate, measured_rate, series.arms, series.kinds, self.max_speed,
             DISTANCE_TOLERANCE * self.cell / dt,
         )  # fmt: skip
         self.consecutive_doubts = self.consecutive_doubts + 1 if max_doubt > 1 else 0

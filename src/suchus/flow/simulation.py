@@ -181,13 +181,12 @@ class Simulation(Fields):
             fixed = isinstance(body.motion, Pose)
             if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may spin in place
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
-            consistencies.append(
-                Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach),
-                    cell,
-                )
-            )
-            changing.append(not fixed)
+            if not fixed or any(pose.velocity) or pose.spins.any():  # else nothing is to be compared
+                source = MotionSource(
+                    body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach
+                )  # fmt: skip
+                consistencies.append(Consistency(source, cell))
+                changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
             consistencies.append(
                 Consistency(MidlineSource(body.name, body.shape.spine), cell, check_interval=RATE_CHECK_INTERVAL)
