@@ -286,6 +286,19 @@ def test_nothing_swims_for_a_claim_on_which_the_rungs_before_disagree(swum):
         assert judge(rule, found).verdict == judge(rule, whole).verdict
 
 
+def test_a_slice_that_is_swum_elsewhere_is_asked_for_what_the_claims_need(swum):
+    asked = []
+
+    def swim_slices(names):
+        asked.append({*names})
+        return slices(8)
+
+    swum_of(slices=swim_slices)
+    swum_of(slices=swim_slices, claims=[rule.claim for rule in RULES])
+    assert asked == [{*ladder.SWIMS}, {"trunk and tail", "tail only", "held"}]
+    assert (2, "held") not in swum
+
+
 def test_only_what_the_claims_are_read_of_swims(swum):
     swum_of(claims=["swim_pressure_falls"])
     assert {name for _, name in swum} == {"held"}

@@ -155,11 +155,10 @@ class ReproduceOptions:
 
     out: RESULTS_FOLDER_OPTION = Path("out")
     quick: QUICK_FLAG = False
-    everything: Annotated[
+    all: Annotated[
         bool,
         tyro.conf.FlagCreatePairsOff,
         tyro.conf.arg(
-            name="all",
             help="Run every experiment, and each in full. Otherwise what no verdict on the article needs is left out.",
         ),
     ] = False
@@ -187,11 +186,9 @@ def reproduce(words: Sequence[str]) -> int:
     description = "Run what the verdicts on the article need and write one page with all results, DIR/report.html."
     options = parse(ReproduceOptions, "suchus reproduce", words, description)
     sound = dict(EXPERIMENTS.items())  # broken experiments are attempted too, and their errors are reported
-    left_out = [] if options.everything else [name for name in sound if not sound[name].reproduces]
+    left_out = [] if options.all else [name for name in sound if not sound[name].reproduces]
     tasks = [
-        ExperimentTask(
-            name=name, out=options.out, quick=options.quick, whole=options.everything, replace=asked_to_replace()
-        )
+        ExperimentTask(name=name, out=options.out, quick=options.quick, whole=options.all, replace=asked_to_replace())
         for name in EXPERIMENTS
         if name not in left_out
     ]
