@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 from suchus.apps.report.rendering import embedded
 from suchus.article.verdict import Word
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
-from suchus.core.files import read_json, read_text
+from suchus.core.files import digest, read_json, read_text
 from suchus.visual.figures import WIDTH
 
 OUTCOME = "outcome.json"
@@ -107,6 +107,11 @@ def check_described(outcome: Any, file: Path) -> None:
         raise IncompatibleRecord(
             f"{file} is no outcome of suchus: {location or 'it'} is of another kind ({first_error['msg'].lower()})."
         ) from error
+
+
+def content_hash(outcome: Mapping[str, Any]) -> str:
+    """Return the SHA-256 of an outcome without its command and provenance, which differ between equal runs."""
+    return digest({name: value for name, value in outcome.items() if name not in ("command", "provenance")})
 
 
 _COLUMN = 1.15 * 72 * WIDTH
@@ -206,6 +211,12 @@ def load_result(folder: str | Path) -> Result:
     except OSError as error:
         raise UnreadableFile(f"{error.filename or file} cannot be read: {(error.strerror or '').lower()}.") from error
     return Result(folder=folder, outcome=outcome, pictures=pictures, tables=tables, films=films, replays=replays)
+
+
+def is_unchanged(result: Result) -> bool:
+    """Return whether an outcome is as suchus wrote it; True for one of a version that wrote no ``content_hash``."""
+    stored_hash = result.outcome["provenance"].get("content_hash")
+    return stored_hash is None or stored_hash == content_hash(result.outcome)
 
 
 def has_all_files(result: Result) -> bool:

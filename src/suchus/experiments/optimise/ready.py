@@ -86,7 +86,12 @@ def _crawl_of(robot: Robot) -> Optimisation:
     Raises:
         UnsuitedRobot: it has no limbs or no axis that bends, or its feet follow no paths.
     """
-    check_needs(robot, ("foot_paths", "axis"), "the search crawl")
+    check_needs(
+        robot,
+        ("foot_paths", "axis"),
+        "the search crawl",
+        remedy="choose another robot, or write a search as a file (docs/optimise.md)",
+    )
     gait = default_gait(robot)
     if not gait.has("strokes"):
         raise UnsuitedRobot(
