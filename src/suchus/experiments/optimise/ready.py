@@ -83,7 +83,12 @@ def search_gait(robot: Robot) -> Gait:
     Raises:
         UnsuitedRobot: it has no limbs or no axis that bends, or no gait of it has feet that follow paths.
     """
-    check_needs(robot, ("foot_paths", "axis"), "the search crawl")
+    check_needs(
+        robot,
+        ("foot_paths", "axis"),
+        "the search crawl",
+        remedy="choose another robot, or write a search as a file (docs/optimise.md)",
+    )
     own_gait = default_gait(robot)
     gait = own_gait if own_gait.has("strokes") else draft_gait(robot, DRAFTED)
     if not gait.has("strokes"):
