@@ -16,7 +16,7 @@ from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import FOR_VERDICTS, QUICK_FLAG, RESULTS_FOLDER_OPTION, parse
 from suchus.apps.cli.run import perform
 from suchus.apps.cli.terminal import Bars, working
-from suchus.apps.report import Failure, Result, check_place, has_all_files, load_result, write_page
+from suchus.apps.report import Failure, Result, check_place, has_all_files, is_unchanged, load_result, write_page
 from suchus.core import threads
 from suchus.core.errors import SuchusError
 from suchus.core.files import check_replaceable, check_writable, has_same_provenance, remove_leftovers
@@ -101,7 +101,11 @@ def reusable_result(task: ExperimentTask) -> TaskResult | None:
     except SuchusError:
         return None
     if not (
-        is_same and has_all_files(result) and result.outcome["command"] == task.command and _is_shipped(experiment)
+        is_same
+        and is_unchanged(result)
+        and has_all_files(result)
+        and result.outcome["command"] == task.command
+        and _is_shipped(experiment)
     ):
         return None
     return TaskResult(result=result, summary=f"{_summary(result)} (kept from an earlier run)")

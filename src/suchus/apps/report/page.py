@@ -12,7 +12,6 @@ from pydantic import ValidationError
 
 from suchus.apps.report.beside import compare_with_animals
 from suchus.apps.report.outcome_page import MARKS, PAGE, is_reduced, verdict_rows, write_outcome_page
-from suchus.apps.report.rendering import embedded, number, quantity, render, tied
 from suchus.apps.report.result import Failure, Result
 from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.core.errors import SuchusError
@@ -25,6 +24,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics.energy import METRES
 from suchus.visual import figures
+from suchus.visual.pages import embedded, number, quantity, render
 
 _MIN_GIST_LENGTH = 60
 """Letters that say something [-]."""
@@ -84,8 +84,8 @@ def render_page(
         left_out: names of the experiments that were not run.
     """
     page_folder = None if page_folder is None else Path(page_folder)
-    content = {**_content(results, failures), "left_out": left_out}
-    return render("page.html", page_folder, content, tied=tied, gist=_gist)
+    content = _content(results, failures)
+    return render("report.html", page_folder, left_out=left_out, gist=_gist, **content)
 
 
 def _gist(text: str) -> str:
@@ -116,6 +116,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
         "reduced": [result.name for result in results if is_reduced(result)],
+        "thumbnails": {result.name: result.pictures[0].thumbnail for result in results if result.pictures},
         "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,
         "authors": AUTHORS,
@@ -135,7 +136,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": compare_with_animals(robot, answered),
         "metres": metres(answered),
-        "shown": next((result for result in results if result.replays), None),
+        "shown": max((result for result in results if result.replays), key=_headline_count, default=None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
         "others": robot_counts,
@@ -146,6 +147,11 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "misprints": tuple(ERRATA.values()) if is_article_robot else (),
         "versions": versions(),
     }
+
+
+def _headline_count(result: Result) -> int:
+    """Return how many of the claims that the page begins with a result judges [-]."""
+    return sum(verdict["claim"] in HEADLINE for verdict in result.outcome["verdicts"])
 
 
 def _counts(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, int]:
