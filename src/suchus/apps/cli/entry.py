@@ -216,6 +216,7 @@ COMMANDS = (
         "drive a robot of servos",
         "suchus.apps.cli.drive:run",
         first_word="gait",
+        other_words=("swim",),
         shelf_options=("robot", "gait"),
     ),
     Subcommand(
