@@ -96,10 +96,18 @@ def scene(
         "colours": {name: _rgb(text) for name, text in KEYS.items()}
         | {"legs": [_rgb(colour) for _, colour in limb_colours(robot)]},
         "skin": _packed_skin(surface, pack),
+        "head": _head(robot, surface),
         "actors": [_packed(robot, run, name, relief, pack) for run, name in zip(moving, labels, strict=False)],
         "relief": None if relief is None else _packed_relief(relief, pack),
     }
     return meta, pack.text()
+
+
+def _head(robot: Robot, surface: Skin) -> dict[str, Any]:
+    """Return the bone at the front of the axis, and the foremost point of its skin at rest [m]."""
+    bone = surface.bones.index(robot.axis[0].name)
+    points = surface.vertices[surface.indices[:, 0] == bone]
+    return {"bone": bone, "at": np.round(points[points[:, 0].argmax()], 6).tolist()}
 
 
 def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:

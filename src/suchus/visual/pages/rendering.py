@@ -1,13 +1,11 @@
-"""Where the pages of results come from: templates that share a frame, a style and the way numbers are written.
-
-Figures are made small enough to travel inside a page.
-"""
+"""Templates that share a frame, parts, a style and the way numbers are written; figures that travel inside a page."""
 
 import base64
 import io
+import json
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Mapping, Sequence
 from functools import cache
 from math import degrees, isnan
 from pathlib import Path
@@ -16,8 +14,10 @@ from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, pass_context
 from jinja2.runtime import Context
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from PIL import Image
+
+from suchus.core.files import package_commit, versions
 
 UNKNOWN = "unknown"
 """What stands in the place of a number that is none."""
@@ -58,6 +58,11 @@ def tied(text: str) -> str:
     return re.sub(r"\b(Figs?|Table|Section|eqs?)(\.?) ", "\\1\\2\N{NO-BREAK SPACE}", text)
 
 
+def coded(text: str) -> Markup:
+    """Return a text in which what stands between backticks is set as code."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
 _HEAVY = 60_000
 """Length of a drawing [byte] beyond which pixels may stand for it; sixty of them make less than 4 MB."""
 _COLOURS = 64
@@ -91,11 +96,18 @@ def as_drawing(svg: str) -> Markup:
     return Markup(_PLAIN_TEXT + escaped.replace("<", "%3C").replace(">", "%3E"))
 
 
-def as_pixels(png: bytes) -> Markup:
-    """Return a PNG as a data URI, with a palette of few colours."""
+def as_pixels(png: bytes, max_width: int | None = None) -> Markup:
+    """Return a PNG as a data URI, with a palette of few colours.
+
+    Args:
+        png: the picture.
+        max_width: width to which a wider one is made smaller [pixel]; None: it keeps its size.
+    """
     with Image.open(io.BytesIO(png)) as picture:
         flat = Image.new("RGB", picture.size, "white")
         flat.paste(picture, mask=picture.getchannel("A") if picture.mode == "RGBA" else None)
+    if max_width is not None and flat.width > max_width:
+        flat = flat.resize((max_width, round(flat.height * max_width / flat.width)), Image.Resampling.LANCZOS)
     compact_png = io.BytesIO()
     flat.quantize(_COLOURS, dither=Image.Dither.NONE).save(compact_png, format="PNG", optimize=True)
     return Markup(f"data:image/png;base64,{base64.b64encode(compact_png.getvalue()).decode()}")
@@ -108,32 +120,66 @@ def _rounded(attribute: re.Match[str]) -> str:
     return f'{name}="{_NUMBER.sub(lambda n: f"{float(n[0]):.2f}".rstrip("0").rstrip("."), value)}"'
 
 
-def render(template: str, page_folder: Path | None, content: dict[str, Any], **filters: Any) -> str:
+def origin_text(version: str | None = None, commit: str | None = None, digests: Mapping[str, str] | None = None) -> str:
+    """Return what made a page: suchus with its version, its commit and digests, as the foot of a page says it.
+
+    Args:
+        version: version of suchus; that which runs if None.
+        commit: commit of its checkout; that which runs if None, left out if empty.
+        digests: digests by name, of code and settings; empty ones are left out.
+    """
+    parts = {
+        "commit": package_commit() if commit is None else commit,
+        **({} if digests is None else digests),
+    }
+    made_by = f"suchus {versions()['suchus'] if version is None else version}".strip()
+    return ", ".join([made_by, *(f"{name} {value}" for name, value in parts.items() if value)])
+
+
+def embed_json(values: Mapping[str, Any] | Sequence[Any]) -> Markup:
+    """Return values as JSON that is safe inside a page's script."""
+    return Markup(json.dumps(values, separators=(",", ":")).replace("<", "\\u003c"))
+
+
+def render(template: str, page_folder: Path | None = None, **content: Any) -> str:
     """Return a page as text.
 
     Args:
-        template: name of its file.
+        template: name of its file in the folder of templates.
         page_folder: the folder of the page, from which it links files; None: the one that holds their folders.
-        content: what the template names.
-        filters: filters of the template, beside ``quantity``, ``number`` and ``link``.
+        **content: what the template names.
     """
-    environment = _environment(tuple(filters.items()))
-    style = Markup(environment.get_template("style.css").render())
-    return environment.get_template(template).render(style=style, page_folder=page_folder, **content) + "\n"
+    known = {"version": versions()["suchus"], "origin": origin_text(), "page_folder": page_folder}
+    return _environment().get_template(template).render(known | content) + "\n"
 
 
 @cache
-def _environment(filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Environment:
-    """Return templates with their filters; each is compiled once in a process."""
+def _environment() -> Environment:
+    """Return the templates with their filters; each is compiled once in a process."""
     environment = Environment(
-        loader=PackageLoader("suchus.apps.report"),
+        loader=PackageLoader("suchus.visual.pages"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"quantity": quantity, "number": number, "link": _link, **dict(filters)}
+    environment.filters |= {
+        "quantity": quantity,
+        "number": number,
+        "tied": tied,
+        "coded": coded,
+        "deg": degrees,
+        "link": _link,
+    }
+    environment.globals["source"] = _source
     return environment
+
+
+def _source(name: str) -> Markup:
+    """Return the text of a program among the templates, which a page's script holds."""
+    templates = _environment()
+    assert templates.loader is not None
+    return Markup(templates.loader.get_source(templates, name)[0])
 
 
 @pass_context

@@ -437,6 +437,12 @@
   });
   const names = actors.map((actor, i) => { const mark = document.createElement("span"); mark.className = i ? "name ghost" : "name";
     mark.textContent = actors.length > 1 && !meta.chosen ? actor.label : ""; scale.append(mark); return mark; });
+  const heads = actors.map(() => { const mark = document.createElement("span"); mark.className = "head"; mark.textContent = "head"; scale.append(mark); return mark; });
+  const HEAD_DISTANCE = 0.05; // of the word from the snout [body length]
+  function headOf({ turns, shifts }) {
+    const b = meta.head.bone, part = (array, size) => Array.from(array.subarray(4 * b, 4 * b + size));
+    return add(turn(part(turns, 4), add(meta.head.at, [HEAD_DISTANCE * bodyLength, 0, 0])), part(shifts, 3));
+  }
   function put(mark, at, seen, visible = true) {
     const m = seen.matrix, w = m[3] * at[0] + m[7] * at[1] + m[11] * at[2] + m[15];
     const x = (m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w, y = (m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w;
@@ -445,10 +451,11 @@
   }
   function labels(seen) {
     for (const { mark, at } of marks) put(mark, at, seen);
+    heads.forEach((mark, i) => put(mark, headOf(frame(actors[i], state.time)), seen, meta.chosen ? i === state.run : !i || state.compare === "beside"));
     actors.forEach((actor, i) => put(names[i], add(frame(actor, state.time).mass, [0, 0, (i && state.compare === "over" ? 0.22 : 0.16) * meta.size]), seen, i === 0 || state.compare !== "hidden"));
   }
   const places = meta.length < 0.5 ? 3 : 2;
-  const metres = (v) => `${v.toFixed(places).replace("-", "−")} m`;
+  const metres = (v) => `${v.toFixed(places).replace(/^-(?=[0.]+$)/, "").replace("-", "−")} m`;
   function readout(now, seenActors) {
     $("clock").textContent = `${state.time.toFixed(2)} s`;
     if (live) $("time").max = lastTime();

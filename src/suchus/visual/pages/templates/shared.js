@@ -143,9 +143,18 @@ const shared = (() => {
     shade();
     gl.depthFunc(gl.LESS);
   }
+  const small = matchMedia("(max-width: 600px), (max-height: 430px)");
+  function fold() { // on a phone and inside another page the scene comes first: all but the time is folded away
+    const folded = framed || small.matches;
+    document.body.classList.toggle("folded", folded);
+    $("controls").open = !folded;
+  }
   function begin(drawn, passed) {
     [draw, pass] = [drawn, passed];
     document.body.classList.add("alive");
+    document.body.classList.toggle("framed", framed);
+    fold();
+    small.addEventListener("change", fold);
     theme(state.dark);
     $("play").textContent = state.playing ? "Pause" : "Play";
     requestAnimationFrame(tick);
