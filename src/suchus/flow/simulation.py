@@ -59,10 +59,20 @@ OFFSET_TOLERANCE = 1e-3
 """Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
-def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose motion and midline, if it has one, are cached for each time within a step."""
-    if isinstance(body, Body) and not isinstance(body.motion, Pose):
-        body = replace(body, motion=CachedMotion(body.motion))
+def _remembering(body: AnyBody, ndim: int) -> AnyBody:
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step.
+
+    Its poses have as many components as the domain has axes.
+
+    Args:
+        body: the body.
+        ndim: number of axes of the domain, 2 or 3.
+    """
+    if isinstance(body, Body):
+        checked = body.pose
+        is_fixed = isinstance(body.motion, Pose)
+        motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
+        body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -120,7 +130,7 @@ class Simulation(Fields):
         )
         self.ndim = setup.grid.ndim
         self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
-        self._bodies = [_remembering(body) for body in setup.bodies]
+        self._bodies = [_remembering(body, self.ndim) for body in setup.bodies]
         self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
@@ -175,7 +185,7 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).in_dimensions(self.ndim)
+            pose = body.pose(0.0)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
@@ -183,7 +193,7 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             if not fixed or any(pose.velocity) or pose.spins.any():  # else nothing is to be compared
                 source = MotionSource(
-                    body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach
+                    body.name, lambda t: pose if fixed else body.pose(t), reach
                 )  # fmt: skip
                 consistencies.append(Consistency(source, cell))
                 changing.append(not fixed)
@@ -212,7 +222,7 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
+            return body.pose(self.time if time is None else time)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
