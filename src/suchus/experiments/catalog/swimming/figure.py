@@ -192,9 +192,10 @@ def draw_forces(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
-        f"to tail{' and as printed' * ('printed_thrust' in record)}; dashed and in numbers the means of all cycles but the first. Right: what the water "
-        "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
-        f"a flow that cannot pass over and under the body overstates it{_servo_note(record)}. On the right: "
+        f"to tail{' and as printed' * ('printed_thrust' in record)}; dashed and in numbers the means of all cycles but "
+        "the first. Right: what the water asks of the servos at their shafts, every section as high as the robot "
+        "there, over each servo's limit (red); a flow that cannot pass over and under the body overstates "
+        f"it{_servo_note(record)}. On the right: "
         f"{ALONG_THE_SKIN[0].lower()}{ALONG_THE_SKIN[1:]}",
     )
 
