@@ -318,6 +318,11 @@ def _correct(prescribed, induced, target, places, fractions, relaxation):  # typ
     return max_rise
 
 
+def _are_numbers(values: np.ndarray, shape: tuple[int, ...]) -> bool:
+    """Return whether an array is one finite number, or has a shape and holds finite numbers."""
+    return values.shape in ((), shape) and values.dtype.kind in "iuf" and bool(np.isfinite(values).all())
+
+
 @dataclass(slots=True)
 class Edge:
     """One side of the domain during a run."""
@@ -389,15 +394,16 @@ class Edge:
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
-                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
-                f"number for each other axis, or None."
+                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; wall_velocity() gives "
+                f"one finite number for each other axis, or None."
             )
         if self.side.is_permeable and not self.side.is_open:
             inflow = np.asarray(self.side.inflow_velocity(time, *self.face_coordinates))
-            if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
+            if not _are_numbers(inflow, self.prescribed.shape):
                 raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
-                    f"gives one finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; "
+                    f"inflow_velocity() gives one finite number [m/s], or as many as there are places, shape "
+                    f"{self.prescribed.shape}."
                 )
         return slides, inflow
 

@@ -146,7 +146,8 @@ class SwimFree(Experiment):
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity in the flow [-], chosen for what the cells carry."""
     flow_cycles: int = 4
-    """Cycles that are swum in the flow, from rest; speeds are of the last [-]."""
+    """Cycles that are swum in the flow, from rest. Speeds are of the settled cycles; where there are none, of the last,
+    and ``unsettled_...`` is 1 [-]."""
     correction: str = ""
     """File with factors on the section model, such as the ``correction.toml`` of a run in a flow. All swims by sections
     then have them, and a line says if they are at another Reynolds number; empty leaves the model as it is."""
