@@ -104,7 +104,7 @@ _OTHERS = (
     ),
     Kept(
         name="verdicts", modules=("suchus.article.verdict",),
-        renew="make reproduce && python tools/verdict_table.py out",
+        renew="suchus reproduce --all && python tools/verdict_table.py out",
         sources=("claims", *EXPERIMENTS),
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),

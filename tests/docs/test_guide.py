@@ -100,3 +100,10 @@ def test_words_are_counted_without_code_and_addresses():
 @pytest.mark.parametrize("query", QUERIES)
 def test_a_search_finds_the_page(query):
     assert all(re.search(rf"\b{word}\b", page(QUERIES[query]), re.IGNORECASE) for word in query.split())
+
+
+def test_the_glossary_is_in_alphabetical_order():
+    glossary = page("conventions").partition("\n## Glossary\n")[2]
+    terms = re.findall(r"^\*\*(.+?)\*\*\n:", glossary, re.MULTILINE)
+    assert len(terms) > 20
+    assert terms == sorted(terms, key=str.lower)

@@ -81,6 +81,7 @@ def render_outcome_page(result: Result) -> str:
         "on_shelf": outcome["experiment"] in EXPERIMENTS,
         "lead": answer(outcome["decides"]),
         "more": sentences[ANSWER_SENTENCES:],
+        "is_reduced": is_reduced(result),
         "robot": robot,
         "is_article_robot": robot in ARTICLE_ROBOTS,
         "citation": citation(outcome),
@@ -96,6 +97,11 @@ def render_outcome_page(result: Result) -> str:
         "marks": MARKS,
     }
     return render("outcome.html", result.folder, **content)
+
+
+def is_reduced(result: Result) -> bool:
+    """Return whether what no verdict needs was left out of a run."""
+    return "--for-verdicts" in result.outcome.get("command", "").split()
 
 
 def verdict_rows(result: Result) -> Iterator[dict[str, Any]]:

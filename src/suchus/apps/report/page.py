@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from suchus.apps.report.beside import compare_with_animals
-from suchus.apps.report.outcome_page import MARKS, PAGE, verdict_rows, write_outcome_page
+from suchus.apps.report.outcome_page import MARKS, PAGE, is_reduced, verdict_rows, write_outcome_page
 from suchus.apps.report.result import Failure, Result
 from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.core.errors import SuchusError
@@ -44,10 +44,18 @@ HEADLINE = (
 """Claims that the page begins with: what the article is about, in its order."""
 
 
-def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str | Path) -> Path:
+def write_page(
+    results: Sequence[Result], failures: Sequence[Failure], path: str | Path, *, left_out: Sequence[str] = ()
+) -> Path:
     """Write the page, and those of outcomes that have none yet, and return its path.
 
     An earlier one stays until the new one is complete.
+
+    Args:
+        results: results in the order of the page.
+        failures: what did not.
+        path: file of the page.
+        left_out: names of the experiments that were not run.
 
     Raises:
         Unwritable: the place cannot be written to.
@@ -56,20 +64,28 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str
     for result in results:
         if not (result.folder / PAGE).is_file():
             write_outcome_page(result.folder)
-    text = render_page(results, failures, path.parent)
+    text = render_page(results, failures, path.parent, left_out=left_out)
     return write(path, text)
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure], page_folder: str | Path | None = None) -> str:
+def render_page(
+    results: Sequence[Result],
+    failures: Sequence[Failure],
+    page_folder: str | Path | None = None,
+    *,
+    left_out: Sequence[str] = (),
+) -> str:
     """Return the page as text.
 
     Args:
         results: results in the order of the page.
         failures: what did not.
         page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
+        left_out: names of the experiments that were not run.
     """
     page_folder = None if page_folder is None else Path(page_folder)
-    return render("report.html", page_folder, gist=_gist, **_content(results, failures))
+    content = _content(results, failures)
+    return render("report.html", page_folder, left_out=left_out, gist=_gist, **content)
 
 
 def _gist(text: str) -> str:
@@ -99,6 +115,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     return {
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
+        "reduced": [result.name for result in results if is_reduced(result)],
         "thumbnails": {result.name: result.pictures[0].thumbnail for result in results if result.pictures},
         "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,

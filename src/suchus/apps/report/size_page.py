@@ -206,9 +206,11 @@ def _overheating(sizing: Sizing) -> list[str]:
     assert winding.heat is not None
     count = len({name for _, name, _, _ in overheated})
     servo_text = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
-    final_text = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
+    limit = f"{winding.heat.limit:.0f}"
+    steady = f"{load.steady:.0f}" if f"{load.steady:.0f}" != limit else f"{load.steady:.1f}"
+    final_text = f"would reach {steady} °C" if isfinite(load.steady) else "would never stop warming"
     return [
-        f"As it is designed, {servo_text}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"As it is designed, {servo_text}: in {case} it passes the {limit} °C that are allowed after "
         f"{time_to_limit / 60:.2g} min and {final_text} if the movement went on for ever."
     ]
 

@@ -100,6 +100,13 @@ class Displacement(TwoGroups):
         if self.policy is not None:
             self.policy.check_robot(self.robot)
 
+    def for_verdicts(self) -> "Displacement":
+        """Return the same question with the ends of the map and the gait itself."""
+        return replace(
+            self, strokes=_ends_and(1.0, self.strokes), bends=_ends_and(1.0, self.bends),
+            pitches=_ends_and(self.pitches[len(self.pitches) // 2], self.pitches), phases=_ends_and(0.0, self.phases),
+        )  # fmt: skip
+
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
         strokes = tuple(stroke / _CRAWL.stroke for stroke in (0.02, 0.06))
@@ -284,6 +291,11 @@ class Displacement(TwoGroups):
         return all(
             getattr(self, name) == getattr(default_experiment, name) for name in ("robot", "gait", "control_group")
         )
+
+
+def _ends_and(value: float, values: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the first and the last of some rising values, and a value between them."""
+    return tuple(sorted({values[0], value, values[-1]}))
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:

@@ -215,6 +215,11 @@ class SwimFree(Experiment):
             unknown = [name for name in self.spread if name not in _COEFFICIENT_FACTORS]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_COEFFICIENT_FACTORS)}")
 
+    def for_verdicts(self) -> "SwimFree":
+        """Return the same question with swims as short as can answer."""
+        cycles = {name: int(least) for name, least in self.answer_minima.items()}
+        return replace(self, **{name: min(least, getattr(self, name)) for name, least in cycles.items()})
+
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
         return replace(

@@ -219,7 +219,7 @@ def draw_free(record: xr.Dataset) -> Figure:
         ax = axes[1, 0]
         ax.grid(True)
         colours = (COLOURS[role] for role in ("ours", "spine", "tail", "limbs_only", "ours", "limbs_only"))
-        for arm, colour, marker in zip(record.arm.values, colours, "os^vDX", strict=True):
+        for arm, colour, marker in zip(record.arm.values, colours, "os^vDX", strict=False):
             dashes = (0, (5, 2)) if str(arm).startswith("exact") else "-"
             label = f"{arm}, from head to tail" if str(arm) == "exact wave" else str(arm)
             ax.plot(
