@@ -452,29 +452,36 @@ def sections(
     """Return swims in six degrees of freedom, from rest at the surface or just below, by the forces of sections.
 
     Args:
-        swimmers: bodies of one length.
+        swimmers: bodies, those of one control period in one batch.
         cycles: of each [-].
         coasts: whether to read how they coast, with their postures held.
         progress: told the share that is done.
     """
-    runs = [
-        Run(
-            robot=one.robot,
-            gait=one.gait,
-            lake=_lake(one),
-            control=Swimming(ramp=0.0 if one.gait.curves else one.ramp * one.gait.period),
-            label=str(i),
-        )
-        for i, one in enumerate(swimmers)
-    ]
     shares = (0.0, 0.6, 1.0) if coasts else (0.0, 1.0)
-    longest = max(one.gait.period for one in swimmers)
-    record = simulate(
-        runs,
-        duration=cycles * longest,
-        progress=lambda stage, share: progress(stage, shares[0] + share * (shares[1] - shares[0])),
-    )
-    found = [_of_run(record.isel(run=i), one, cycles) for i, one in enumerate(swimmers)]
+    groups: dict[float, list[int]] = {}
+    for i, one in enumerate(swimmers):
+        groups.setdefault(control_period(one.robot), []).append(i)
+    swums: dict[int, SwimPrediction] = {}
+    for number, group in enumerate(groups.values()):
+        runs = [
+            Run(
+                robot=swimmers[i].robot,
+                gait=swimmers[i].gait,
+                lake=_lake(swimmers[i]),
+                control=Swimming(ramp=0.0 if swimmers[i].gait.curves else swimmers[i].ramp * swimmers[i].gait.period),
+                label=str(i),
+            )
+            for i in group
+        ]
+        longest = max(swimmers[i].gait.period for i in group)
+        part = portion(progress, number, len(groups))
+        record = simulate(
+            runs,
+            duration=cycles * longest,
+            progress=lambda stage, share, part=part: part(stage, shares[0] + share * (shares[1] - shares[0])),
+        )
+        swums |= {i: _of_run(record.isel(run=k), swimmers[i], cycles) for k, i in enumerate(group)}
+    found = [swums[i] for i in range(len(swimmers))]
     if not coasts:
         return found
     speeds = [abs(swum.speed) if isfinite(swum.speed) else 0.1 for swum in found]

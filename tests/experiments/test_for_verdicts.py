@@ -21,7 +21,8 @@ def told_disturbances(record: xr.Dataset) -> xr.Dataset:
 
 
 def needed_swims(record: xr.Dataset) -> xr.Dataset:
-    kept = record.drop_vars([name for name in record.variables if str(name).startswith("printed_c")])
+    printed = [name for name in record.variables if str(name).startswith("printed_") and name != "printed_model_speed"]
+    kept = record.drop_vars(printed)
     speeds = kept.ladder_speed.where(kept.ladder_motion == "trunk and tail")
     is_theory = kept.rung.isin(["resistive", "reactive", "sections"])
     return kept.isel(arm=[0], reading=[]).assign(ladder_speed=kept.ladder_speed.where(is_theory, speeds))

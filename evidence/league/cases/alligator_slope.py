@@ -120,7 +120,7 @@ contestant = SingleContestant(
             "push_down": Quantity(unit="-", words="the same downhill, forward positive"),
         },
         rungs={
-            gait: Predictor(words=f"rigid bodies with contacts, {words}", work=partial(walked, gait), draws=12)
+            gait: Predictor(words=f"rigid bodies with contacts, {words}", work=partial(walked, gait), draws=4)
             for gait, words in (("high_walk", "the high walk"), ("belly_crawl", "the belly crawl"))
         },
         excluded_models={"theories of swimming, slice, space": "it walks"},

@@ -266,29 +266,29 @@ def _predict(prescribed, induced, previous_induced, velocity, places, inflows, f
         dt: length of the step [cells per (m/s)].
     """
     for e in range(places.shape[0]):
-        start, component, face, inside, row_stride, stride = (
+        start, component, face, inner_face, row_stride, stride = (
             places[e, 0], places[e, 4], places[e, 6], places[e, 7], places[e, 8], places[e, 9]
         )  # fmt: skip
         columns, sign, stream, weight, rise = (
             places[e, 10], velocity.dtype.type(places[e, 5]), inflows[e, 0], inflows[e, 1], inflows[e, 2]
         )  # fmt: skip
-        share, count = velocity.dtype.type(0.0), places[e, 1] - start
+        courant, count = velocity.dtype.type(0.0), places[e, 1] - start
         if places[e, 3] and weight > 0.0:
             total = 0.0
             for k in range(count):
                 total += np.float64(sign * velocity[component, face + k // columns * row_stride + k % columns * stride])
-            share = velocity.dtype.type(min(max(-total / count, 0.0) * dt, 1.0))
+            courant = velocity.dtype.type(min(max(-total / count, 0.0) * dt, 1.0))
         for k in range(count):
             change = growth * (induced[start + k] - previous_induced[start + k])
             if places[e, 3]:
                 inflow = stream + induced[start + k] + change
                 if weight > 0.0:
                     offset = k // columns * row_stride + k % columns * stride
-                    outer, inner = (
+                    side_velocity, inner_velocity = (
                         sign * velocity[component, face + offset],
-                        sign * velocity[component, inside + offset],
+                        sign * velocity[component, inner_face + offset],
                     )
-                    outflow = outer - share * (outer - inner)
+                    outflow = side_velocity - courant * (side_velocity - inner_velocity)
                     inflow = weight * (outflow + (rise + change)) + (1.0 - weight) * inflow
                 prescribed[start + k] = inflow
             previous_induced[start + k] = induced[start + k]
@@ -308,14 +308,19 @@ def _correct(prescribed, induced, target, places, fractions, relaxation):  # typ
         fractions: see ``_balance``.
         relaxation: fraction of the difference that is corrected [-].
     """
-    largest = 0.0
+    max_rise = 0.0
     for k in range(induced.size):
         rise = relaxation * (target[k] - induced[k])
         prescribed[k] += prescribed.dtype.type(rise)
         induced[k] += rise
-        largest = max(largest, abs(rise))
+        max_rise = max(max_rise, abs(rise))
     _balance(prescribed, places, fractions)
-    return largest
+    return max_rise
+
+
+def _are_numbers(values: np.ndarray, shape: tuple[int, ...]) -> bool:
+    """Return whether an array is one finite number, or has a shape and holds finite numbers."""
+    return values.shape in ((), shape) and values.dtype.kind in "iuf" and bool(np.isfinite(values).all())
 
 
 @dataclass(slots=True)
@@ -389,15 +394,16 @@ class Edge:
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
-                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
-                f"number for each other axis, or None."
+                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; wall_velocity() gives "
+                f"one finite number for each other axis, or None."
             )
         if self.side.is_permeable and not self.side.is_open:
             inflow = np.asarray(self.side.inflow_velocity(time, *self.face_coordinates))
-            if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
+            if not _are_numbers(inflow, self.prescribed.shape):
                 raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
-                    f"gives one finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; "
+                    f"inflow_velocity() gives one finite number [m/s], or as many as there are places, shape "
+                    f"{self.prescribed.shape}."
                 )
         return slides, inflow
 

@@ -36,6 +36,9 @@ half-widths, by some 2 %; the rate of a heading moves an eel's sides by 7 % and 
 DISTANCE_TOLERANCE = 1e-5
 """Distance between the two in one step that is always allowed [cells]."""
 
+RIGID_TOLERANCE = 1e-3
+"""Largest distance that a body with ``deforms=False`` may move by itself in the first step [cells]."""
+
 MAX_CONSECUTIVE_ERRORS = 3
 """Consecutive disagreements that raise an error: a kink of the motion causes one [-]."""
 
@@ -238,6 +241,25 @@ class MidlineSource(NamedTuple):
         arms[2] = reference[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return CoordinateSeries(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
+
+    def refuse_motion(self, time: float, dt: float, cell: float) -> None:
+        """Refuse a midline that moves although its body is declared not to deform.
+
+        Args:
+            time: time [s].
+            dt: a step, after which the midline is compared [s].
+            cell: side of a cell [m].
+
+        Raises:
+            InvalidDesign: a station moves, or has a rate.
+        """
+        series = self.sample((time, time + dt))
+        distance = float(np.abs(np.array([series.coordinates[1], dt * series.rates[0]]) * series.arms).max())
+        if distance > RIGID_TOLERANCE * cell:
+            raise InvalidDesign(
+                f"{self.name} has deforms=False, and its midline moves by {distance:.3g} m in the first step of "
+                f"{dt:.3g} s, by its places or its rates; leave out deforms, or move the whole body by its motion."
+            )
 
     def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""

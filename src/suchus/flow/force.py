@@ -215,6 +215,14 @@ def interpolate_at(field, strides, position):
         strides: difference of the flat indices of neighbours along each axis, shape (axis,) [-].
         position: fractional index of the padded array along each axis, shape (axis,).
     """
+    if position.size == 2:
+        i, j = int(position[0]), int(position[1])
+        fraction_x, fraction_y = position[0] - i, position[1] - j
+        lower_index = i * strides[0] + j * strides[1]
+        upper_index = lower_index + strides[1]
+        lower_value = (1.0 - fraction_x) * field[lower_index] + fraction_x * field[lower_index + strides[0]]
+        upper_value = (1.0 - fraction_x) * field[upper_index] + fraction_x * field[upper_index + strides[0]]
+        return (1.0 - fraction_y) * lower_value + fraction_y * upper_value
     total = 0.0
     for corner in range(1 << position.size):
         weight, flat_index = 1.0, 0

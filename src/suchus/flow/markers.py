@@ -67,22 +67,22 @@ def max_speed(velocities, stream):
         velocities: shape (axis, marker) [m/s].
         stream: velocity of the stream, shape (axis,) [m/s].
     """
-    largest = 0.0
+    max_square = 0.0
     for k in range(velocities.shape[1]):
         square = 0.0
         for d in range(velocities.shape[0]):
             square += (velocities[d, k] - stream[d]) ** 2
-        largest = largest if square <= largest or largest != largest else square
-    return np.sqrt(largest)
+        max_square = max_square if square <= max_square or max_square != max_square else square
+    return np.sqrt(max_square)
 
 
 @compiled
 def extent(points):
     """Return the largest extent of points along an axis, shape (axis, marker) [m]."""
-    largest = 0.0
+    max_extent = 0.0
     for d in range(points.shape[0]):
-        low, high = points[d, 0], points[d, 0]
+        min_coordinate, max_coordinate = points[d, 0], points[d, 0]
         for k in range(points.shape[1]):
-            low, high = min(low, points[d, k]), max(high, points[d, k])
-        largest = max(largest, high - low)
-    return largest
+            min_coordinate, max_coordinate = min(min_coordinate, points[d, k]), max(max_coordinate, points[d, k])
+        max_extent = max(max_extent, max_coordinate - min_coordinate)
+    return max_extent

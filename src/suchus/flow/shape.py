@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import is_number, show
 from suchus.flow.ellipsoid import measure_ellipse
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_outline
@@ -114,8 +115,8 @@ def check_positive(name: str, value: float) -> None:
     Raises:
         InvalidDesign: naming the value.
     """
-    if not (isfinite(value) and value > 0):
-        raise InvalidDesign(f"{name} is {value} m; a positive length is needed.")
+    if not (is_number(value) and isfinite(value) and value > 0):
+        raise InvalidDesign(f"{name} is {show(value)} m; a positive length is needed.")
 
 
 class Solid(Shape):

@@ -12,6 +12,7 @@ import numpy as np
 
 from suchus.core import threads
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.core.kinds import is_number, show
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, symmetric
@@ -55,14 +56,27 @@ RATE_CHECK_INTERVAL = 8
 LAYER_SPEED_FACTOR = 1.5
 """Factor by which a moving body may exceed the speed that the grid resolves before the run stops [-]."""
 
+MAX_STEP_RATIO = 1.2
+"""Largest step over the one in which the fastest water or body crosses a cell [-]."""
+
 OFFSET_TOLERANCE = 1e-3
 """Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
-def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose motion and midline, if it has one, are cached for each time within a step."""
-    if isinstance(body, Body) and not isinstance(body.motion, Pose):
-        body = replace(body, motion=CachedMotion(body.motion))
+def _remembering(body: AnyBody, ndim: int) -> AnyBody:
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step.
+
+    Its poses have as many components as the domain has axes.
+
+    Args:
+        body: the body.
+        ndim: number of axes of the domain, 2 or 3.
+    """
+    if isinstance(body, Body):
+        checked = body.pose
+        is_fixed = isinstance(body.motion, Pose)
+        motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
+        body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -120,12 +134,14 @@ class Simulation(Fields):
         )
         self.ndim = setup.grid.ndim
         self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
-        self._bodies = [_remembering(body) for body in setup.bodies]
+        self._bodies = [_remembering(body, self.ndim) for body in setup.bodies]
         self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
         cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
         max_threads = max(1, cells // MIN_THREAD_CELLS)
         self._threads = min(threads.count(), max_threads) if thread_count is None else thread_count
+        if self._threads < 1:
+            raise OutsideLimits(f"a simulation is to use {thread_count} threads; give at least 1.")
         self._log, self._watch = Log(setup), Watch(setup)
         self._last_step = 0.0
         self._frame_velocity_at(0.0)
@@ -175,7 +191,7 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).in_dimensions(self.ndim)
+            pose = body.pose(0.0)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
@@ -183,22 +199,23 @@ class Simulation(Fields):
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
             if not fixed or any(pose.velocity) or pose.spins.any():  # else nothing is to be compared
                 source = MotionSource(
-                    body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach
+                    body.name, lambda t: pose if fixed else body.pose(t), reach
                 )  # fmt: skip
                 consistencies.append(Consistency(source, cell))
                 changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
-            consistencies.append(
-                Consistency(MidlineSource(body.name, body.shape.spine), cell, check_interval=RATE_CHECK_INTERVAL)
-            )
+            midline = MidlineSource(body.name, body.shape.spine)
+            consistencies.append(Consistency(midline, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
             links = LinkSource(body.name, body.shape.motion, body.shape.bounding_radii)
             consistencies.append(Consistency(links, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
-        for consistency in consistencies:
+        for consistency, is_changing in zip(consistencies, changing, strict=True):
             consistency.start(0.0, consistency.max_step(0.0, step))
+            if not is_changing and isinstance(consistency.source, MidlineSource):
+                consistency.source.refuse_motion(0.0, step, cell)
         return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
 
     # --- state -------------------------------------------------------------------------------------------------
@@ -212,7 +229,7 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
+            return body.pose(self.time if time is None else time)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
@@ -256,19 +273,30 @@ class Simulation(Fields):
             for consistency in self._consistency_checks:
                 limit = consistency.max_step(self.time, limit)
             return self._accelerating_step(self.setup.courant * limit, self.setup.courant)
-        if self.setup.step > 1.2 * limit:
-            raise OutsideLimits(
-                f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
-                f"{self.setup.step / limit:.3g}; above 1 it explodes. Take a step of at most {0.8 * limit:.3g} s, "
-                f"or None."
-            )
-        longest = self._accelerating_step(self.setup.step, 1.2)
+        self._refuse_long_step(self.setup.step, limit)
+        longest = self._accelerating_step(self.setup.step, MAX_STEP_RATIO)
         if longest < self.setup.step:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a body accelerates so fast that it moves by more than a cell in a step of "
                 f"{self.setup.step:.3g} s. Take a step of at most {0.8 * longest:.3g} s, or None."
             )
         return self.setup.step
+
+    def _refuse_long_step(self, dt: float, limit: float) -> None:
+        """Refuse a step in which water or a body moves by more than a cell.
+
+        Args:
+            dt: the step [s].
+            limit: longest step by the speeds [s].
+
+        Raises:
+            OutsideLimits: with the Courant number and the step that is allowed.
+        """
+        if dt > MAX_STEP_RATIO * limit:
+            raise OutsideLimits(
+                f"at t = {self.time:.4g} s a step of {dt:.3g} s has Courant number {dt / limit:.3g}; above 1 it "
+                f"explodes. Take a step of at most {0.8 * limit:.3g} s, or None."
+            )
 
     def _accelerating_step(self, dt: float, courant: float) -> float:
         """Return the longest step in which no body that accelerates moves by more than a part of a cell [s].
@@ -340,15 +368,18 @@ class Simulation(Fields):
         Raises:
             Diverged: the fields are not finite or far too fast; the record's fields are those of the last valid step.
             InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates do not match its positions.
-            OutsideLimits: ``dt`` is not positive.
+            OutsideLimits: ``dt`` is not positive, or water or a body would move by more than a cell.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
             self._speed = max(self._speed, self._reference, self.water.imposed(self.time))
         dt = self.next_step() if dt is None else dt
-        if not (isfinite(dt) and dt > 0):
-            raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
+        if not (is_number(dt) and isfinite(dt) and dt > 0):
+            raise OutsideLimits(
+                f"a step is to last {show(dt)} s; give a positive time, or None to let the solver choose."
+            )
+        self._refuse_long_step(dt, self._limit(max(self._fastest, self._speed)))
         for consistency in self._consistency_checks:
             consistency.check_step(self.time, dt)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
@@ -729,15 +760,15 @@ class Simulation(Fields):
             Unwritable: the checkpoint cannot be written.
             OutsideLimits: ``until`` is not a time, or one that has passed.
         """
-        if not isfinite(end_time):
-            raise OutsideLimits(f"the run is to last until {end_time} s; give a finite time.")
+        if not (is_number(end_time) and isfinite(end_time)):
+            raise OutsideLimits(f"the run is to last until {show(end_time)} s; give a finite time.")
         self._refuse_past(end_time, "the run", "a new Simulation")
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
             self._refuse_past(end_time, f"the run of the checkpoint {path}", "another file")
         cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
-        watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
+        watchers = _watchers(watch)
         due = due_after(self.time, watch_interval)
         saver = store.Saver(path, checkpoint_every)
         with Bar(self.time, end_time, cells, show=progress) as bar:
@@ -784,8 +815,16 @@ class Simulation(Fields):
             margin: distance of the sides of the box from the bodies' window [m].
 
         Raises:
-            InvalidDesign: a mirror cuts a body, so that no box goes around it.
+            InvalidDesign: a mirror cuts a body, so that no box goes around it; there is no body; or the margin is not
+                a number of at least 0.
         """
+        if not self._bodies:
+            raise InvalidDesign("a control volume goes around bodies, and there is none; give a body.")
+        if not (is_number(margin) and isfinite(margin) and margin >= 0):
+            raise InvalidDesign(
+                f"the margin of the control volume is {show(margin)} m; give a distance of at least 0, so that the box "
+                f"is around the bodies."
+            )
         if not self._is_placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
@@ -851,6 +890,19 @@ class _LatestStep(NamedTuple):
     """Fastest speed of a body's surface in the frame of the grid [m/s]."""
     imposed_speed: float
     """Fastest speed that a side imposes at its end [m/s]."""
+
+
+def _watchers(watch: Watcher | Sequence[Watcher] | None) -> tuple[Watcher, ...]:
+    """Return the functions that are called during a run.
+
+    Raises:
+        InvalidDesign: one is no function.
+    """
+    watchers = () if watch is None else tuple(watch) if isinstance(watch, Sequence) else (watch,)
+    for watcher in watchers:
+        if not callable(watcher):
+            raise InvalidDesign(f"watch is {show(watch)}; give a function of the simulation, or several in a list.")
+    return watchers
 
 
 def _even_step(dt: float, remaining: float) -> float:

@@ -735,10 +735,10 @@ class Fluid:
         """
         r, level_layout, near_layout, inner = self._views[multigrid.B], self._layout[0], self._near_layout, self.inner
         u, source = self._flat(velocity), self._flat(self.source)
-        mean, largest = residual(
+        mean, maximum = residual(
             r, u, source, self._views[multigrid.DINV], level_layout, near_layout, inner, self.repeats, self._sums
         )
-        solve = poisson.Solve(0, mean, largest)
+        solve = poisson.Solve(0, mean, maximum)
         if (
             solve.mean_divergence > MIN_SOLVED_RESIDUAL * limits[0]
             or solve.max_divergence > MIN_SOLVED_RESIDUAL * limits[1]

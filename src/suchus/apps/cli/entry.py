@@ -129,7 +129,7 @@ COMMANDS = (
     Subcommand(
         "replay",
         "RECORD.nc [--out FILE.html]",
-        "make a page of a stored run that plays offline",
+        "make a page of a stored run that plays offline, or a film",
         "suchus.apps.cli.replay:make_replay",
         first_word="file",
         shelf_options=("robot",),

@@ -6,6 +6,7 @@ from math import ceil, floor
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from suchus.core.rotation import rotate
 from suchus.robot.design import GRAVITY, Robot, layout
@@ -160,9 +161,13 @@ def _packed_water(run: Frames, ground: Ground, pack: PackedArrays) -> dict[str, 
     """Return the level of the water in each frame, and the direction against gravity in the frame of the ground."""
     if run.level is None:
         return None
+    return {"levels": pack.add(run.level.astype(np.float32)), "up": np.round(upward(ground), 9).tolist()}
+
+
+def upward(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return the direction against gravity in the frame of the ground."""
     back = slope(ground.uphill, ground.sideways) * np.array([1.0, -1.0, -1.0, -1.0])
-    upward = rotate(back, np.array([0.0, 0.0, 1.0]))
-    return {"levels": pack.add(run.level.astype(np.float32)), "up": np.round(upward, 9).tolist()}
+    return rotate(back, np.array([0.0, 0.0, 1.0]))
 
 
 def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:

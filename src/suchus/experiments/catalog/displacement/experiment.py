@@ -27,7 +27,7 @@ from suchus.experiments.experiment import (
     staged,
 )
 from suchus.robot.control import Learned, Policy
-from suchus.robot.design import layout
+from suchus.robot.design import lacking, layout
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.robot.motion import START, FootPath, Gait, suits
@@ -130,15 +130,16 @@ class Displacement(TwoGroups):
         return SimulationResult(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of the crawl with spine and tail and of that with limbs only."""
+        """Return the replay of the crawl with all of the axis and of that with limbs only."""
+        axis = "a bending trunk" if lacking(self.robot, ("tail_yaw",)) else "spine and tail"
         return replayed(
             "crawl_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
-            labels=("spine and tail", "limbs only"),
-            title="Crawling with spine and tail, and without",
-            caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
+            labels=(axis, "limbs only"),
+            title=f"Crawling with {axis}, and without",
+            caption=f"The same legs twice: with {axis}, and, half transparent, with limbs only.",
         )
 
     def _displacement_map(self, duration: float, progress: Any) -> xr.Dataset:

@@ -173,8 +173,8 @@ class PlaneSwims(Experiment):
         )  # fmt: skip
 
     def for_verdicts(self) -> "PlaneSwims":
-        """Return the same question with the swims that its verdicts need."""
-        return replace(self, extent="verdicts", readings=())
+        """Return the same question with the swims that its verdicts need, and films of fewer pictures."""
+        return replace(self, extent="verdicts", readings=(), frames=min(self.frames, 10))
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim tethered and free, in every motion, on every rung of the ladder, as far as ``extent`` says."""

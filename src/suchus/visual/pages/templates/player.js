@@ -438,7 +438,7 @@
   const names = actors.map((actor, i) => { const mark = document.createElement("span"); mark.className = i ? "name ghost" : "name";
     mark.textContent = actors.length > 1 && !meta.chosen ? actor.label : ""; scale.append(mark); return mark; });
   const heads = actors.map(() => { const mark = document.createElement("span"); mark.className = "head"; mark.textContent = "head"; scale.append(mark); return mark; });
-  const HEAD_DISTANCE = 0.05; // of the word from the snout [body length]
+  const HEAD_DISTANCE = 0.08; // of the word from the snout [body length]
   function headOf({ turns, shifts }) {
     const b = meta.head.bone, part = (array, size) => Array.from(array.subarray(4 * b, 4 * b + size));
     return add(turn(part(turns, 4), add(meta.head.at, [HEAD_DISTANCE * bodyLength, 0, 0])), part(shifts, 3));
