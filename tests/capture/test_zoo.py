@@ -117,7 +117,7 @@ def test_a_late_keypoint_is_named_without_its_neighbour():
     "seed",
     [
         *(18, 22, 24, 28, 39, 63, 75, 80, 87, 90, 93, 96, 101, 113, 116, 134, 142, 146, 151),
-        *(203, 240, 307, 309, 313, 314, 333),
+        *(82, 203, 208, 240, 307, 309, 313, 314, 333, 746, 934),
     ],
 )
 def test_what_stops_turns_or_climbs_is_measured_and_nobody_is_late(seed):

@@ -7,6 +7,10 @@ import pytest
 
 from suchus.apps.cli import main
 from suchus.apps.report import compare, load_result, render_comparison
+from suchus.apps.report.result import content_hash
+from suchus.apps.report.saving import describe
+from suchus.core.errors import IncompatibleRecord
+from suchus.experiments.catalog import EXPERIMENTS
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"></svg>'
 
@@ -32,6 +36,16 @@ def write(folder, measures, verdicts=(), settings=None, experiment="displacement
         "replays": [{"name": name, "caption": "A walk."} for name in replays],
         "provenance": {"config_hash": "a", "seed": 0, "seconds": 1.0},
     }  # fmt: skip
+    (folder / "outcome.json").write_text(json.dumps(told))
+    return folder
+
+
+def seal(folder, **altered):
+    """Give an outcome the hash that suchus writes, and alter measures of it afterwards."""
+    told = json.loads((folder / "outcome.json").read_text())
+    told["provenance"]["content_hash"] = content_hash(told)
+    for name, value in altered.items():
+        told["measures"][name]["value"] = value
     (folder / "outcome.json").write_text(json.dumps(told))
     return folder
 
@@ -160,7 +174,9 @@ BAD = {
     "a empty": "outcome.json",
     "a text.txt": "text.txt is no outcome",
     "a broken": "broken",
-    "a other": "no measure in common",
+    "a other": "a answers displacement and other answers swimming; compare two outcomes of one experiment",
+    "a unlike": "no measure in common",
+    "a altered": "altered/outcome.json was changed after suchus wrote it",
     "a b --out page.png": "page.png",
     "a b --out /dev/null/page.html": "cannot be written",
     "a b --outt page.html": "--outt",
@@ -174,7 +190,9 @@ def test_bad_words_are_one_sentence_and_leave_no_page(words, two, tmp_path, monk
     Path("text.txt").write_text("text")
     Path("broken").mkdir()
     Path("broken/outcome.json").write_text('{"measures": {}}')
-    write(Path("other"), {"speed": (1.0, "m/s")}, experiment="swimming")
+    write(Path("other"), {"far": (1.0, "m")}, experiment="swimming")
+    write(Path("unlike"), {"speed": (1.0, "m/s")})
+    seal(write(Path("altered"), {"far": (1.0, "m")}), far=2.0)
     before = sorted(tmp_path.rglob("*"))
     assert main(["compare", *words.split()]) == 2
     out, err = capsys.readouterr()
@@ -182,3 +200,23 @@ def test_bad_words_are_one_sentence_and_leave_no_page(words, two, tmp_path, monk
     assert err.count("\n") == 1
     assert BAD[words] in err
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_an_outcome_that_was_changed_after_it_was_written_is_refused(tmp_path):
+    """Its numbers, or its question by another name; one as it was written, or of an older version, is taken."""
+    plain, written = tmp_path / "plain", tmp_path / "written"
+    write(plain, {"far": (1.0, "m")})
+    seal(write(written, {"far": (1.5, "m")}))
+    assert compare(load_result(plain), load_result(written), ("a", "b")).measures[0].difference == 0.5
+    text = (written / "outcome.json").read_text()
+    for old, new in (("1.5", "1.25"), ('"displacement"', '"turning"')):
+        assert old in text
+        (written / "outcome.json").write_text(text.replace(old, new))
+        with pytest.raises(IncompatibleRecord, match="was changed after suchus wrote it"):
+            compare(load_result(plain), load_result(written), ("a", "b"))
+
+
+def test_what_is_written_carries_the_hash_of_its_contents():
+    question = EXPERIMENTS["leg_kinematics"]
+    told = json.loads(json.dumps(describe(question.run(), question, {}, "suchus run leg_kinematics")))
+    assert told["provenance"]["content_hash"] == content_hash(told)

@@ -151,3 +151,66 @@ def test_python_says_the_command(desk):
         ROBOTS.resolve("walker.urdf")
     with pytest.raises(UnreadableFile, match="suchus import"):
         suchus.crawl("fourleg.xml", "belly_crawl")
+
+
+NOT_READ = {  # files of other programs: what they hold, and what the sentence must say
+    "dog.sdf": (b'<?xml version="1.0"?>\n<sdf version="1.6"><model name="dog"/></sdf>', "sdf2mjcf dog.sdf dog.xml"),
+    "dog.world": (b"<sdf/>", "is an SDF"),
+    "dog.urdf": (b"<!-- made by hand -->\n<sdf version='1.9'/>", "is an SDF"),
+    "dog.urdf.xacro": (b"<robot><link name='a'/></robot>", "xacro dog.urdf.xacro > dog.urdf"),
+    "dog.usda": (b"#usda 1.0", "scene in USD"),
+    "dog.proto": (b"PROTO dog [] {}", "getUrdf()"),
+    "dog.STL": (b"solid", "give the URDF or MJCF that names it"),
+    "dog.step": (b"ISO-10303-21;", "export a URDF from that program"),
+    "dog.zip": (b"PK\x03\x04\xff", "unpack it"),
+    "dog.yaml": (b"name: dog", "a robot is a TOML, a URDF or an MJCF"),
+}
+
+
+@pytest.mark.parametrize("name", NOT_READ)
+@pytest.mark.parametrize("words", [["import"], ["parts"]])
+def test_what_is_not_read_is_named_with_its_remedy(words, name, tmp_path, monkeypatch, capsys):
+    """An SDF was called invalid TOML, an archive no text in UTF-8."""
+    monkeypatch.chdir(tmp_path)
+    content, remedy = NOT_READ[name]
+    Path(name).write_bytes(content)
+    assert main([*words, name]) == 2
+    told = capsys.readouterr().err
+    assert remedy in told
+    assert "TOML:" not in told
+    assert "needs options" not in told
+    assert told.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_robot_by_another_ending_is_known_by_its_content(desk, capsys):
+    shutil.copy("walker.urdf", "walker.txt")
+    shutil.copy("fourleg.xml", "fourleg.model")
+    Path("page.html").write_text("<!DOCTYPE html><html/>")
+    for name, words in (
+        ("walker.txt", "walker.txt is a URDF and no TOML: name it walker.urdf"),
+        ("fourleg.model", "fourleg.model is an MJCF and no TOML: name it fourleg.xml"),
+        ("page.html", "page.html is XML that begins with <html>"),
+    ):
+        assert main(["parts", name]) == 2
+        assert words in capsys.readouterr().err
+
+
+def test_our_own_robot_is_not_imported(desk, capsys):
+    Path("mine.toml").write_text('base = "caiman"\n')
+    assert main(["import", "mine.toml"]) == 2
+    assert "mine.toml is a robot of suchus already: give it as --robot mine.toml" in capsys.readouterr().err
+
+
+def test_a_file_that_no_option_mends_is_not_sent_to_the_options(desk, capsys):
+    Path("broken.urdf").write_text("<robot><link/>")
+    assert main(["parts", "broken.urdf"]) == 2
+    told = capsys.readouterr().err
+    assert "is no XML" in told
+    assert "needs options" not in told
+
+
+@pytest.mark.parametrize(("name", "experiment"), [("walker.urdf", "speed_range"), ("minnow.xml", "swim_free")])
+def test_a_body_that_does_not_suit_is_referred_to_an_experiment_that_it_suits(name, experiment, desk, capsys):
+    assert main(["run", "displacement", "--robot", name, "--quick"]) == 2
+    assert f"or ask suchus run {experiment}, whose needs it meets" in capsys.readouterr().err

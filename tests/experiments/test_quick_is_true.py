@@ -45,7 +45,7 @@ def full_measures(name):
 def test_a_form_that_is_too_short_says_so_and_what_would_do(name):
     sentence = EXPERIMENTS[name].quick().too_short()
     assert re.match(
-        r"Too short to answer: \w+ (is|has) [\d.e+]+( values)?, and [\d.e+]+ at least are needed\. ", sentence
+        r"Too short to answer: \w+ (is|has) [\d.e+]+( values| s)?, and [\d.e+]+( s)? at least are needed\. ", sentence
     )
     assert f"`suchus run {name}`" in sentence
     assert EXPERIMENTS[name].too_short() == ""
@@ -84,7 +84,7 @@ def test_what_is_too_short_shows_no_number_no_figure_and_no_sentence(tmp_path, c
     folder = tmp_path / "shore"
     outcome = json.loads((folder / "outcome.json").read_text())
     assert outcome["decides"] == outcome["too_short"]
-    assert "Too short to answer: duration is 2, and 30 at least are needed." in said
+    assert "Too short to answer: duration is 2 s, and 30 s at least are needed." in said
     assert "came ashore" not in said
     assert "ashore share" not in said
     assert not [*folder.glob("*.png"), *folder.glob("*.svg")]
@@ -104,5 +104,6 @@ def test_a_smaller_robot_needs_less_time():
     small = EXPERIMENTS["floating"].for_robot(hatchling())
     assert small.too_short() == ""
     assert replace(small, duration=6.0).too_short() == ""
-    assert "duration is 5, and 5.45004 at least are needed" in replace(small, duration=5.0).too_short()
-    assert "10 at least are needed" in replace(EXPERIMENTS["floating"], duration=6.0).too_short()
+    assert "duration is 5 s, and 5.46 s at least are needed" in replace(small, duration=5.0).too_short()
+    assert replace(small, duration=5.46).too_short() == ""
+    assert "10 s at least are needed" in replace(EXPERIMENTS["floating"], duration=6.0).too_short()

@@ -112,6 +112,15 @@ def test_an_interrupt_keeps_the_best_so_far_and_a_greater_budget_goes_on(small, 
     np.testing.assert_array_equal(longer.history.share[:13], first.history.share)
 
 
+def test_the_count_is_of_whole_generations(small, tmp_path):
+    """The generation in which the candidates run out is finished: it was counted as 16 of 4."""
+    told = []
+    optimise(replace(small, evaluations=5, limits=()), tmp_path / "s", progress=lambda stage, share: told.append(stage))
+    counts = [match.groups() for stage in told if (match := re.match(r"best: (\d+) of (\d+) tried", stage))]
+    assert {total for _, total in counts} == {"8"}
+    assert [int(count) for count, _ in counts][-1] == 8
+
+
 def test_another_search_is_named_and_left_alone(small, tmp_path):
     spec = replace(small, limits=(), evaluations=4)
     optimise(spec, tmp_path / "s")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
-from math import isfinite, nan
+from math import ceil, floor, isfinite, log10, nan
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
@@ -22,7 +22,8 @@ from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.core.intervals import CONFIDENCE, fraction_interval, median_interval
 from suchus.core.progress import Progress, silent, staged
 from suchus.experiments.claims import check_claims, known_claims, rules_of
-from suchus.robot.design import Robot, check_needs
+from suchus.robot.design import Robot, check_needs, lacking
+from suchus.robot.design.meaning import meanings, unit
 from suchus.robot.design.scale import coarse_step, control_period, rescale_fields
 from suchus.robot.gaits import default_gait, in_size
 from suchus.robot.motion import Gait, check_limits, suits
@@ -31,6 +32,8 @@ __all__ = [
     "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "SimulationResult", "ends", "estimated",
     "estimated_fraction", "ranged", "silent", "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
+ALTERNATIVES = ("displacement", "speed_range", "swim_free", "floating")
+"""Experiments that a robot is referred to if it lacks what another one needs; the last takes any robot."""
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
 _NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")
@@ -219,7 +222,7 @@ class Experiment(ABC):
     needs: ClassVar[tuple[str, ...]] = ()
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     reproduces: ClassVar[bool] = True
-    """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
+    """Whether ``suchus reproduce`` runs it without ``--all``; False for what judges none of the article's claims."""
     follows_gait: ClassVar[bool] = True
     """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
     judged_settings: ClassVar[tuple[str, ...]] = ("robot",)
@@ -251,7 +254,7 @@ class Experiment(ABC):
         self._check_names()
         check_claims(self.name(), self.rules())
         if hasattr(self, "robot"):
-            check_needs(self.robot, self.needs, self.name())
+            self._check_robot(self.robot)
             gaits = (*_gaits(getattr(self, "gait", None)), *_gaits(getattr(self, "gaits", None)))
             for gait in gaits if self.follows_gait else ():
                 check_limits(self.robot, gait)  # first, so that an error names the user's gait and not a derived one
@@ -275,6 +278,22 @@ class Experiment(ABC):
                 too_short=self.too_short(),
                 seconds=seconds(),
             )
+
+    def _check_robot(self, robot: Robot) -> None:
+        """Refuse a robot that lacks what the experiment needs, and name one of ``ALTERNATIVES`` that it suits.
+
+        Raises:
+            UnsuitedRobot: the robot lacks something.
+        """
+        if not lacking(robot, self.needs):
+            return
+        from suchus.experiments.catalog import EXPERIMENTS  # noqa: PLC0415  the catalog's entries import this module
+
+        alternative = next(
+            name for name in ALTERNATIVES if name != self.name() and not lacking(robot, EXPERIMENTS[name].needs)
+        )
+        remedy = f"choose another robot, or ask suchus run {alternative}, whose needs it meets"
+        check_needs(robot, self.needs, self.name(), remedy=remedy)
 
     def _check_names(self) -> None:
         """Refuse a parameter that holds two entries of the same name, since their measures would have the same name."""
@@ -375,6 +394,13 @@ class Experiment(ABC):
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
 
+    def for_verdicts(self) -> Self:
+        """Return the same question without what no verdict needs: the points of maps, runs that are only compared.
+
+        The verdicts have the same words. It is the same question where nothing can be left out.
+        """
+        return self
+
     def for_robot(self, robot: Robot) -> Self:
         """Return the same question for another robot.
 
@@ -384,7 +410,7 @@ class Experiment(ABC):
         Raises:
             UnsuitedRobot: the robot lacks what the experiment needs, or no gait in the catalog suits it.
         """
-        check_needs(robot, self.needs, self.name())
+        self._check_robot(robot)
         names = [parameter.name for parameter in fields(self)]  # type: ignore[arg-type]
         if "robot" not in names:
             return self
@@ -477,8 +503,10 @@ class Experiment(ABC):
             value = getattr(self, name)
             count = len(value) if isinstance(value, tuple) else value
             if count < minimum:
+                unit_of_value = "" if isinstance(value, tuple) else unit(meanings(type(self)).get(name, ""))
+                unit_text = f" {unit_of_value}" if unit_of_value.strip("-") else ""
                 size_text = f"{name} has {count} values" if isinstance(value, tuple) else f"{name} is {count:g}"
-                return f"{size_text}, and {minimum:g} at least are needed"
+                return f"{size_text}{unit_text}, and {_rounded_up(minimum)}{unit_text} at least are needed"
         return ""
 
     def settings(self) -> dict[str, Any]:
@@ -495,6 +523,14 @@ def _gaits(value: Any) -> tuple[Gait, ...]:
     """Return the gaits that a field holds."""
     entries = value if isinstance(value, tuple) else (value,)
     return tuple(entry for entry in entries if isinstance(entry, Gait))
+
+
+def _rounded_up(minimum: float) -> str:
+    """Return a minimum as text: whole as it is, else with three digits, of which the last is rounded up."""
+    if float(minimum).is_integer():
+        return f"{minimum:g}"
+    step = 10.0 ** (floor(log10(minimum)) - 2)
+    return f"{ceil(minimum / step) * step:.3g}"
 
 
 def _short_name(value: Any) -> str:

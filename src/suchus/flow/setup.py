@@ -15,10 +15,9 @@ from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, extent, kernel_array, max_speed
 from suchus.flow.midline import Midline, check_state
 from suchus.flow.nest import patch_sides
-from suchus.flow.pose import speeds
 from suchus.flow.resolution import (
     MAX_FORCE_ERROR,
     WARNING_FORCE_ERROR,
@@ -334,9 +333,9 @@ class Setup:
         Raises:
             InvalidDesign: the estimate is above ``MAX_FORCE_ERROR``; the message names a sufficient cell.
         """
-        extent = float(np.ptp(markers.points, axis=1).max())
-        speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
-        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
+        length = extent(kernel_array(markers.points))
+        speed = max_speed(kernel_array(markers.velocities), np.array(stream, float))
+        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),
             required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
@@ -346,7 +345,7 @@ class Setup:
             million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.ndim / 1e6
             size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.ndim == 3 else ""
             raise InvalidDesign(
-                f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
+                f"at t = {time:.4g} s and Reynolds number {speed * length / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
                 f"{100 * error:.0f} %; take cells of at most {layer / min_cells:.3g} m{size}, better "
                 f"{layer / required_cells(WARNING_FORCE_ERROR, is_compact=is_blunt):.3g} m, a lower Reynolds number, "

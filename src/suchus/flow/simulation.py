@@ -26,11 +26,11 @@ from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
 from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
-from suchus.flow.pose import Pose, length, speeds
+from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
@@ -43,6 +43,9 @@ from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
+
+MIN_THREAD_CELLS = 16_384
+"""Cells for each thread of the kernels: on fewer, threads wait for each other longer than they compute [-]."""
 
 ADDED_MASS_INTERVAL = 8
 """Steps between two computations of a free body's added mass [-]."""
@@ -60,8 +63,20 @@ OFFSET_TOLERANCE = 1e-3
 """Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
-def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is cached for each time within a step."""
+def _remembering(body: AnyBody, ndim: int) -> AnyBody:
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step.
+
+    Its poses have as many components as the domain has axes.
+
+    Args:
+        body: the body.
+        ndim: number of axes of the domain, 2 or 3.
+    """
+    if isinstance(body, Body):
+        checked = body.pose
+        is_fixed = isinstance(body.motion, Pose)
+        motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
+        body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -71,7 +86,8 @@ def _remembering(body: AnyBody) -> AnyBody:
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    return float(speeds(markers.velocities).max())
+    speed: float = max_speed(kernel_array(markers.velocities), np.zeros(len(markers.velocities)))
+    return speed
 
 
 Watcher = Callable[["Simulation"], None]
@@ -101,7 +117,7 @@ class Simulation(Fields):
 
         Args:
             setup: what is simulated.
-            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+            thread_count: threads of the kernels; None takes those of ``threads.count``, and fewer for a small grid [-].
 
         Raises:
             InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
@@ -118,9 +134,12 @@ class Simulation(Fields):
         )
         self.ndim = setup.grid.ndim
         self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
-        self._bodies = [_remembering(body) for body in setup.bodies]
+        self._bodies = [_remembering(body, self.ndim) for body in setup.bodies]
+        self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
-        self._threads = threads.count() if thread_count is None else thread_count
+        cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
+        max_threads = max(1, cells // MIN_THREAD_CELLS)
+        self._threads = min(threads.count(), max_threads) if thread_count is None else thread_count
         if self._threads < 1:
             raise OutsideLimits(f"a simulation is to use {thread_count} threads; give at least 1.")
         self._log, self._watch = Log(setup), Watch(setup)
@@ -137,6 +156,8 @@ class Simulation(Fields):
         self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
+        self._poses: list[Pose] = []  # of bodies at the end of the last step, in the frame of the grid
+        self._fastest_marker_speed: tuple[list[Markers], float] | None = None
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
@@ -170,19 +191,18 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).in_dimensions(self.ndim)
+            pose = body.pose(0.0)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
             if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may spin in place
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
-            consistencies.append(
-                Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach),
-                    cell,
-                )
-            )
-            changing.append(not fixed)
+            if not fixed or any(pose.velocity) or pose.spins.any():  # else nothing is to be compared
+                source = MotionSource(
+                    body.name, lambda t: pose if fixed else body.pose(t), reach
+                )  # fmt: skip
+                consistencies.append(Consistency(source, cell))
+                changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
             midline = MidlineSource(body.name, body.shape.spine)
             consistencies.append(Consistency(midline, cell, check_interval=RATE_CHECK_INTERVAL))
@@ -209,11 +229,13 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
+            return body.pose(self.time if time is None else time)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
         """Return a pose of the world frame in the frame of the grid."""
+        if self.setup.follow is None:  # the grid stays where it is
+            return pose
         position, velocity = (
             tuple(a - b for a, b in zip(vector, frame, strict=True))
             for vector, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
@@ -369,8 +391,10 @@ class Simulation(Fields):
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
-        poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not self._are_static
+        if moving or not self._is_placed:
+            self._poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
+        poses = self._poses
         has_new_places = moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE
         if has_new_places:
             self.water.offset = offset
@@ -391,19 +415,24 @@ class Simulation(Fields):
                 ]
             )
         imposed_speed = self.water.imposed(time)
-        marker_speeds = [_fastest_marker(m) for m in self._outlines]  # a body may just start to move
-        self._speed = max([self._speed, length(stream), imposed_speed, *marker_speeds])
+        body_speed = self._body_speed()  # a body may just start to move
+        self._speed = max(self._speed, length(stream), imposed_speed, body_speed)
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, stream, tuple(map(float, push)), limits, time)
         self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
         contents = self._log.region_contents
-        self._latest_step = _LatestStep(
-            dt, poses, push, drift, contents, max(marker_speeds, default=0.0), imposed_speed
-        )
+        self._latest_step = _LatestStep(dt, poses, push, drift, contents, body_speed, imposed_speed)
         self._note(self._latest_step, has_new_places=has_new_places)
         self._log.control(self.water, dt, push)
+
+    def _body_speed(self) -> float:
+        """Return the fastest speed of the bodies' surfaces in the frame of the grid [m/s]."""
+        if self._fastest_marker_speed is None or self._fastest_marker_speed[0] is not self._outlines:
+            speed = max(map(_fastest_marker, self._outlines), default=0.0)
+            self._fastest_marker_speed = self._outlines, speed
+        return self._fastest_marker_speed[1]
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
         """Return the contact force and torque on each body in the middle of the next step, by name [N/m, N].
@@ -609,8 +638,7 @@ class Simulation(Fields):
         ]
         self.clear_shape_cache()
         self._log.rows.pop()
-        body_speed = max(map(_fastest_marker, self._outlines), default=0.0)
-        self._latest_step = self._latest_step._replace(body_speed=body_speed)
+        self._latest_step = self._latest_step._replace(body_speed=self._body_speed())
         self._note(self._latest_step, has_new_places=True)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
@@ -635,14 +663,16 @@ class Simulation(Fields):
         Raises:
             UnknownName: there is no such body.
         """
-        names = [b.name for b in self._bodies]
-        if name not in names:
-            raise UnknownName("body", name, names or ("none",))
-        return names.index(name)
+        number = self._numbers.get(name)
+        if number is None:
+            raise UnknownName("body", name, list(self._numbers) or ("none",))
+        return number
 
     def clear_shape_cache(self) -> None:
-        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
+        """Clear the cached poses and midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
+            if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
+                body.motion.clear()
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
                 spine.clear()
@@ -695,8 +725,8 @@ class Simulation(Fields):
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
         self.clear_shape_cache()
-        poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
-        self.water.place(self._bodies, poses, self.time)
+        self._poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+        self.water.place(self._bodies, self._poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
         self._is_placed = bool(self._log.rows)  # as in the continued run, which keeps its offset

@@ -57,7 +57,10 @@ def comparison_lines(data: xr.Dataset, robot: str) -> list[str]:
         robot: its name.
     """
     name_width = max(len(str(name)) for name in data.joint.values)
-    lines = [f"the animal beside {robot}, joint by joint: its swing, what the gait leaves of it [deg, r.m.s.], and why"]
+    lines = [
+        f"joints of the animal beside those of {robot}, root mean squares in degrees: the animal's swing about its "
+        "mean, the difference of the gait from the animal's angle, and the reason for that difference"
+    ]
     for i, name in enumerate(data.joint.values):
         animal, residual = np.degrees([data.animal.values[i], data.residual.values[i]])
         residual_text = "   -" if np.isnan(residual) else f"{residual:4.1f}"

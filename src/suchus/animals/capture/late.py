@@ -9,11 +9,13 @@ however many frames there are.
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
+from scipy.stats import chi2
 
 from suchus.animals.capture.angles import joint_bends
 from suchus.animals.capture.cycle import fit, harmonics_for
@@ -24,6 +26,7 @@ from suchus.animals.capture.tracks import Tracks
 _MIN_LAG, _MAX_LAG = 0.015, 0.3  # [cycle]; range of lags that are reported
 _GAIN, _FRAMES = 18.0, 30  # twice the gain of log-likelihood that is significant; least frames
 _EXPLAINS = 0.5  # greatest fraction of the distance's variance that may remain at the lag
+_CHANCE = 1e-4  # probability that noise in the fitted paths alone makes a distance vary as much, for one link
 _GAIN_OF_TWO = 12.0  # the gain for both links of a point at one lag, by turns and pace together
 _SHARED_NOISE = 1.5  # variance of twice a point less both neighbours, over that of two links with noise of their own
 _MIN_TURN_GAIN = 5.0  # the part of that gain by the turns that is significant without the pace
@@ -242,11 +245,11 @@ class _Lags:
         frames = len(self._tracks.time) * min(1.0, *(_independent_fraction(series) for series in residual))
         count = max(2 * len(course.harmonics) + len(course.drift) for name in pair for course in self._courses[name])
         relative_variance = distance_variance / noise
-        lag = self._significant_lag(relative_variance, bend_variance, frames, count / frames)
+        lag = self._significant_lag(relative_variance, bend_variance, frames, count)
         return _LaggedLink(relative_variance, bend_variance, lag, frames)
 
     def _significant_lag(
-        self, relative_variance: Float[np.ndarray, " lag"], bend_variance: float, frames: float, floor: float
+        self, relative_variance: Float[np.ndarray, " lag"], bend_variance: float, frames: float, count: int
     ) -> float:
         """Return the lag at which a distance varies least [s], 0 if it is not significant.
 
@@ -254,14 +257,18 @@ class _Lags:
             relative_variance: variance of the distance over that of noise at each lag, shape (lag,) [-].
             bend_variance: part of that variance that a bend between the points may add [-].
             frames: number of frames with independent residuals.
-            floor: variance that noise gives to the fitted paths; a smaller one is chance.
+            count: numbers of the fitted paths, which noise makes vary: of its variance a smaller one is chance.
         """
+        floor = count / frames
         best = int(np.argmin(relative_variance))
         variance_drop = float(relative_variance[self._zero_index] - max(float(relative_variance[best]), floor))
         gained = frames * variance_drop
         halfway = (best + self._zero_index) // 2
+        is_inside = 0 < best < len(self.lags) - 1  # at an end of the range the least variance is farther off
         is_significant = (
-            gained > _GAIN
+            is_inside
+            and frames * relative_variance[self._zero_index] > _max_noise_variance(count)
+            and gained > _GAIN
             and variance_drop > bend_variance
             and relative_variance[best] < _EXPLAINS * relative_variance[self._zero_index]
             and relative_variance[halfway] - relative_variance[best] < _MAX_HALFWAY * variance_drop
@@ -398,6 +405,16 @@ class _Lags:
         chord = _PACED_CHORD * float(np.mean(link_length[use])) * bend / 16
         variance = variance_inflation * noise + count * chord**2  # that of a chord does not become smaller with frames
         return lag, float(np.sqrt(variance / max(x @ x, 1e-300)))
+
+
+@cache
+def _max_noise_variance(count: int) -> float:
+    """Return the variance of a distance over that of noise, times the frames, that noise in paths exceeds rarely.
+
+    Args:
+        count: numbers of the fitted paths [-].
+    """
+    return float(chi2.isf(_CHANCE, count))
 
 
 def _moving_line(place: Float[np.ndarray, "frame axis"], half: int) -> tuple[np.ndarray, np.ndarray]:

@@ -19,10 +19,10 @@ _ALWAYS = 0.3  # [film]; a longer rest is a pause in any case
 _MIN_FRAMES = 8  # the same in frames
 _MAX_INTERRUPTION = 3  # frames; a shorter movement within a rest is noise
 _JUMP_WINDOW = 5  # frames of the median that leaves out jumps
-_NOISE_FACTOR, _MAX_NOISY_REST = (
-    2.5,
-    0.35,
-)  # displacement at rest over that by noise; greatest such over that of the walk
+_NOISE_FACTOR = 1.8  # greatest speed at rest over the one that noise makes
+_MAX_NOISY_REST = 0.35  # greatest such speed over that of the walk
+_MEDIAN_EFFICIENCY = 0.8  # variance of averaged noise over the same behind a median of five frames
+_NOISE_LENGTH = {2: 1.95, 3: 2.31}  # length of a vector of noise that 85 % stay below, in standard deviations, by axes
 
 
 class Bout(NamedTuple):
@@ -84,10 +84,10 @@ def _activity(tracks: Tracks) -> tuple[Float[np.ndarray, " frame"], float]:
         series = tracks.position[:, *index]
         is_seen = np.isfinite(series)
         if is_seen.mean() > 0.5:
-            filled_series = median_filter(
-                np.interp(tracks.time, tracks.time[is_seen], series[is_seen]), _JUMP_WINDOW, mode="nearest"
-            )
-            noises.append(1.4826 * float(np.median(np.abs(filled_series[1:-1] - _neighbour_mean(filled_series)))))
+            filled_series = np.interp(tracks.time, tracks.time[is_seen], series[is_seen])
+            deviation = np.abs(filled_series[1:-1] - _neighbour_mean(filled_series))
+            noises.append(1.4826 * float(np.median(deviation)) / np.sqrt(1.5))
+            filled_series = median_filter(filled_series, _JUMP_WINDOW, mode="nearest")
             padded_series = np.pad(filled_series, half // 2, mode="edge")
             place[:, *index] = np.convolve(padded_series, np.ones(2 * (half // 2) + 1), mode="valid") / (
                 2 * (half // 2) + 1
@@ -104,8 +104,10 @@ def _activity(tracks: Tracks) -> tuple[Float[np.ndarray, " frame"], float]:
         np.linalg.norm(place[next_frames] - place[previous_frames], axis=-1)
         / (tracks.time[next_frames] - tracks.time[previous_frames])[:, None]
     )
-    smoothed_noise = float(np.median(noises)) * np.sqrt(2.0 / (half + 1))  # of the difference of two means
-    return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1)), smoothed_noise / (half * steps)
+    weights = np.convolve(np.ones(_JUMP_WINDOW) / _JUMP_WINDOW, np.ones(2 * (half // 2) + 1) / (2 * (half // 2) + 1))
+    smoothed_noise = float(np.median(noises)) * np.sqrt(2.0 * np.sum(weights**2) / _MEDIAN_EFFICIENCY)
+    noise_speed = _NOISE_LENGTH[place.shape[-1]] * smoothed_noise / (2 * half * steps)
+    return np.asarray(np.percentile(speed, _MOVING_POINTS, axis=1)), noise_speed
 
 
 def _neighbour_mean(series: Float[np.ndarray, " frame"]) -> Float[np.ndarray, " frame"]:

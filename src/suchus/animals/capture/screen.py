@@ -519,9 +519,9 @@ def _check_noise(tracks: Tracks, left_leg: str, right_leg: str, fraction: float)
     """Refuse feet that change sides in many frames."""
     if fraction > _OFTEN:
         raise UnusableTracks(
-            f"in {tracks.source} {left_leg} lies right of {right_leg} in {100 * fraction:.0f} % of the frames, now "
-            "here and now "
-            f"there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; track them again, or film nearer."
+            f"in {tracks.source} {left_leg} lies right of {right_leg} in {100 * fraction:.1f} % of the frames, "
+            f"now here and now there; up to {100 * _OFTEN:.0f} % is allowed: noise hides the feet; "
+            "track them again, or film nearer."
         )
 
 

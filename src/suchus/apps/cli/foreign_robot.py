@@ -1,5 +1,6 @@
 """A robot of another tool, URDF or MJCF, that a command is given in the place of a robot's own file."""
 
+import re
 import shlex
 import sys
 from functools import lru_cache
@@ -11,6 +12,8 @@ from suchus.core.errors import SuchusError
 from suchus.robot.design import Robot
 from suchus.robot.robots import FOREIGN_ENDINGS, ROBOTS
 
+_OPTION = re.compile(r"--(front|heading|up|neck|tail|leave|foot-radius|packages|without-meshes)\b")
+"""Options of ``suchus import``; an error that names none of them is mended in the file."""
 _pending_notes: dict[str, tuple[str, ...]] = {}
 """What was guessed of each file and is not printed yet, by the word that names it."""
 
@@ -60,6 +63,8 @@ def _draft(absolute_path: str, word: str, stamp: int) -> Any:
     try:
         return import_robot(path, name=path.stem)
     except SuchusError as error:
+        if not _OPTION.search(str(error)):
+            raise
         line = shlex.join(["suchus", "import", word])
         raise BadCommand(
             f"{str(error).rstrip('.')}. A file that needs options is imported first: {line} --help names them; then "

@@ -59,6 +59,7 @@ def import_file(words: Sequence[str]) -> int:
         "Nothing in the file is executed; what it includes is read from its own folder only."
     )
     options = parse(ImportOptions, "suchus import", words, description)
+    blueprint.check_robot_format(options.file, is_import=True)
     output = options.out or Path(f"{options.file.stem}.toml")
     check_toml(output, "robot")
     check_writable(output.parent)

@@ -33,7 +33,8 @@ class OptimiseOptions:
     out: Path | None = None
     """Folder of results; by default out/optimise/NAME. A search that began there is continued."""
     evaluations: int | None = None
-    """Number of candidates that each condition may try; more than before continues an earlier search."""
+    """Number of candidates that each condition may try; the generation in which they run out is finished. More than
+    before continues an earlier search."""
     seed: int | None = None
     """Seed of the search."""
     scheduler: SCHEDULER = None

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from suchus.apps.report.outcome_page import answer
-from suchus.apps.report.rendering import render
-from suchus.apps.report.result import MediaFile, Picture, Result
+from suchus.apps.report.result import OUTCOME, MediaFile, Picture, Result, is_unchanged
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import write
+from suchus.visual.pages import render
 
 _MAX_SETTING_LENGTH = 80
 """Letters of a setting that the page shows [-]."""
@@ -107,8 +107,19 @@ def compare(result_a: Result, result_b: Result, names: tuple[str, str]) -> Compa
         names: what they are called.
 
     Raises:
-        IncompatibleRecord: they have no measure in common.
+        IncompatibleRecord: they are of two experiments, have no measure in common, or one was changed by hand.
     """
+    for result in (result_a, result_b):
+        if not is_unchanged(result):
+            raise IncompatibleRecord(
+                f"{result.folder / OUTCOME} was changed after suchus wrote it, so that its numbers prove nothing: run "
+                "the experiment again."
+            )
+    if result_a.name != result_b.name:
+        raise IncompatibleRecord(
+            f"{result_a.folder} answers {result_a.name} and {result_b.folder} answers {result_b.name}; compare two "
+            "outcomes of one experiment."
+        )
     measures_of_both = result_a.outcome["measures"], result_b.outcome["measures"]
     measures = [_compare_measure(name, *measures_of_both) for name in _union(result_a, result_b)]
     if not any(measure.first_value is not None and measure.second_value is not None for measure in measures):
@@ -171,7 +182,7 @@ def render_comparison(comparison: Comparison, page_folder: str | Path) -> str:
         "pictures": _pairs({p.name: p for p in a.pictures}, {p.name: p for p in b.pictures}),
         "replays": _pairs({r.file.name: r for r in a.replays}, {r.file.name: r for r in b.replays}),
     }
-    return render("compare.html", page_folder, content)
+    return render("compare.html", page_folder, **content)
 
 
 def _pairs(

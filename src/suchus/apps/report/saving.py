@@ -10,12 +10,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from suchus.apps.report.outcome_page import write_outcome_page
-from suchus.apps.report.rendering import number
-from suchus.apps.report.result import OUTCOME, RECORD
+from suchus.apps.report.result import OUTCOME, RECORD, content_hash
 from suchus.article.verdict import Verdict, ladder
 from suchus.core import files as record
 from suchus.experiments.experiment import Experiment, Measure, Outcome
 from suchus.visual import figures as pictures
+from suchus.visual.pages import number
 
 
 def check_place(folder: str | Path) -> None:
@@ -64,7 +64,7 @@ def save_outcome(
 
 def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, str], command: str) -> dict[str, Any]:
     """Return the contents of ``outcome.json``; numbers that are not finite become null."""
-    return {
+    contents = {
         "experiment": outcome.experiment,
         "title": experiment.title,
         "shows": experiment.shows,
@@ -81,8 +81,9 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "tables": list(outcome.tables),
         "films": [{"name": name, "caption": pictures.film_caption(film)} for name, film in outcome.films.items()],
         "replays": [{"name": name, "caption": replay.caption} for name, replay in outcome.replays.items()],
-        "provenance": record.provenance(outcome.settings, seconds=outcome.seconds),
     }
+    provenance = record.provenance(outcome.settings, seconds=outcome.seconds)
+    return contents | {"provenance": provenance | {"content_hash": content_hash(contents)}}
 
 
 def changed_settings(experiment: Experiment) -> list[dict[str, str]]:

@@ -110,7 +110,9 @@ class Tally:
         self.done, self.failed = done_units, failed
         self.note = ""
         """What else is told, behind the count."""
-        self._total, self._unit, self._progress = total, unit, progress
+        self.total = total
+        """Units of the whole job, which may become more while it goes on [-]."""
+        self._unit, self._progress = unit, progress
         self._earlier_units, self._start = done_units, time.perf_counter()
         self._open_units: dict[int, float] = {}
 
@@ -139,15 +141,15 @@ class Tally:
         done_units = self.done + sum(self._open_units.values())
         seconds = time.perf_counter() - self._start
         rate = (done_units - self._earlier_units) / seconds if seconds > 0 else 0.0
-        words = [f"{int(done_units)} of {self._total:g} {self._unit}"]
+        words = [f"{int(done_units)} of {self.total:g} {self._unit}"]
         if rate > 0:
             words.append(f"{rate:.1f}/s" if rate >= 0.1 else f"{3600 * rate:.1f}/h")
-            words.append(f"{_duration(max(self._total - done_units, 0.0) / rate)} left")
+            words.append(f"{_duration(max(self.total - done_units, 0.0) / rate)} left")
         if self.failed:
             words.append(f"{self.failed} failed")
         if self.note:
             words.append(self.note)
-        self._progress(", ".join(words), min(done_units / self._total, 1.0))
+        self._progress(", ".join(words), min(done_units / self.total, 1.0))
 
 
 def _duration(seconds: float) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -156,6 +157,7 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
     tables, best = [_with_generation(start, 0)], np.inf
     while tally.done < spec.evaluations:
         shares, number = driver.ask(), len(tables)
+        tally.total = _whole_generations(tally.done, spec.evaluations, len(shares))
         is_stored = store.has(number)
 
         def tell(stage: str, share: float, number: int = number, count: int = len(shares)) -> None:
@@ -177,6 +179,17 @@ def _searched(spec: Optimisation, store: Store, folder: Path, progress: Progress
     return SearchResult(
         spec=spec, start=start, history=history.assign(score=("candidate", score(spec, history, parts)))
     )
+
+
+def _whole_generations(tried: float, evaluations: int, population: int) -> float:
+    """Return how many candidates a search tries in all [-]: the generation in which they run out is finished.
+
+    Args:
+        tried: candidates of the finished generations [-].
+        evaluations: candidates that the search may try [-].
+        population: candidates of a generation from now on [-].
+    """
+    return tried + population * ceil((evaluations - tried) / population)
 
 
 def _with_generation(table: xr.Dataset, number: int) -> xr.Dataset:

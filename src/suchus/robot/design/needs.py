@@ -118,13 +118,14 @@ def lacking(robot: Robot, needs: Sequence[str]) -> list[str]:
     return [name for name in needs if not NEEDS[name].is_met(robot)]
 
 
-def check_needs(robot: Robot, needs: Sequence[str], consumer: str) -> Robot:
+def check_needs(robot: Robot, needs: Sequence[str], consumer: str, *, remedy: str = "choose another robot") -> Robot:
     """Return a robot that has what is needed; refuse one that lacks something.
 
     Args:
         robot: any robot.
         needs: names of ``NEEDS``.
         consumer: needs it, as the beginning of a sentence.
+        remedy: what the user can do, as the end of a sentence.
 
     Raises:
         UnsuitedRobot: it lacks something; the message names it.
@@ -132,5 +133,5 @@ def check_needs(robot: Robot, needs: Sequence[str], consumer: str) -> Robot:
     missing = lacking(robot, needs)
     if missing:
         words = ", and ".join(NEEDS[name].text for name in missing)
-        raise UnsuitedRobot(f"{consumer} needs {words}; robot {robot.name!r} lacks that: choose another robot.")
+        raise UnsuitedRobot(f"{consumer} needs {words}; robot {robot.name!r} lacks that: {remedy}.")
     return robot

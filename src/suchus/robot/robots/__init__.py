@@ -35,6 +35,8 @@ def _read_robot(path: Path) -> Robot:
         )
     from suchus.robot import blueprint  # noqa: PLC0415  half of the time of an import that reads no file
 
+    blueprint.check_robot_format(path)
+    blueprint.check_no_xml(path)
     robot: Robot = blueprint.read_design(path, Robot, ROBOTS)
     return robot
 

@@ -482,7 +482,7 @@ class Swim:
         return np.array(self.sim.frame[0, : self.chain.axis_count])
 
     def _water_force(self, began: ChainState, posture: ChainState) -> np.ndarray:
-        """Return the generalised force of the water in the last step, in the robot's own coordinates."""
+        """Return the generalised force of the water in the last step on each of the robot's coordinates [N, N m]."""
         loads, place = self.sim.last_loads(self.run.robot.name), 0.5 * (began.position + posture.position)
         return self._times * self.chain.of_robot(self.chain.force(place, loads, self._origin))
 
@@ -684,7 +684,7 @@ class Swim:
         self, stretch: StepInterval, water_force: np.ndarray, fluctuation_work: float, posture: ChainState,
         residual: tuple[float, float], correction_count: int,
     ) -> None:  # fmt: skip
-        """Append the quantities of a step to the series."""
+        """Append a finished step to the series: its end, force and loads of the water, residuals, work and energy."""
         series = self.series
         loads = self.sim.last_loads(self.run.robot.name)
         h = self.time - (series.time[-1] if series.time else 0.0)

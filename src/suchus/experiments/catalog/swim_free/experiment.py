@@ -226,6 +226,11 @@ class SwimFree(Experiment):
             unknown = [name for name in self.spread if name not in _COEFFICIENT_FACTORS]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_COEFFICIENT_FACTORS)}")
 
+    def for_verdicts(self) -> "SwimFree":
+        """Return the same question with swims as short as can answer."""
+        cycles = {name: int(least) for name, least in self.answer_minima.items()}
+        return replace(self, **{name: min(least, getattr(self, name)) for name, least in cycles.items()})
+
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
         return replace(
@@ -321,7 +326,7 @@ class SwimFree(Experiment):
             record.drop_vars([*WATER, "swims_in"]),
             self.robot,
             title="Swimming in a flow that is solved with the robot",
-            caption=f"The whole wave of (20) on the robot's own servos, in the {self.water} of water around it at "
+            caption=f"The whole wave on the robot's own servos, in the {self.water} of water around it at "
             f"f L² / ν = {self.reynolds:.0f}, from rest.",
         )
 
@@ -409,8 +414,8 @@ class SwimFree(Experiment):
             ghost=record.isel(run=labels.index(ghost)),
             labels=("joints as designed" if self._cable else "whole wave", ghost_label),
             title="Swimming in six degrees of freedom",
-            caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with "
-            f"{'stiffer joints' if self._cable else f'the {ghost_label}'}.",
+            caption=f"Swimming at the surface by a wave{', limbs held back' if self.robot.girdles else ''}; half "
+            f"transparent, with {'stiffer joints' if self._cable else f'the {ghost_label}'}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:

@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from suchus.core.errors import SuchusError, UnreadableFile
+from suchus.robot import blueprint
 from suchus.sim.model.importing.cleaning import (
     Drive,
     clean_mjcf,
@@ -56,6 +57,7 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
     Raises:
         UnreadableFile: it cannot be read, is no tree of hinges, or the shape of a body is a mesh that is not read.
     """
+    blueprint.check_robot_format(path, is_import=True)
     root = parse(path)
     meshes = Meshes(path.resolve().parent, packages)
     try:
