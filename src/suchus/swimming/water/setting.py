@@ -57,7 +57,9 @@ class SwimSetting:
     3.5 by 2."""
     blunt: float = 0.0
     """In the plane: least half-width; where the body is thinner it is thickened, its ends made round [cell]. With 1.75
-    cells the force has the least noise; with 0 the body stays as it is."""
+    cells the force has the least noise; with 0 the body stays as it is. Of the caiman held at its snout, at 80 cells a
+    length, the noise along the body falls from 7.3 to 1.3 %, and the mean thrust by half; with 160 cells it is 2.7 %
+    without, with 240 cells 1.6 %."""
     beside: float = MARGIN_BESIDE
     """In space: water beside the widest swing, to each side [body length]."""
     behind: float = MARGIN_BEHIND
