@@ -51,9 +51,9 @@ mutate: .venv/.dev # every rule of a verdict and every measure broken in every w
 validate: .venv/.dev
 	$(PY) -m pytest -m validate -s
 
-league: .venv/.dev # predictions of real machines and animals, into docs/league.md; goes on where it stopped
-	$(PY) -m evidence.league --out out/league
-	$(PY) tools/league_page.py out/league
+league: .venv/.dev # predictions of real machines and animals, into docs/league.md; NAME=amphibot predicts one alone
+	$(PY) -m evidence.league $(NAME) --out out/league
+	$(if $(NAME),,$(PY) tools/league_page.py out/league)
 
 evidence: atlas league validate # everything that stands beside the tests, and takes hours
 

@@ -10,7 +10,7 @@ from collections import defaultdict
 from functools import partial
 from math import prod
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numba
 import numpy as np
@@ -28,15 +28,14 @@ from suchus.swimming.water.swim_setup import ResolvedSwim
 PIECES = (
     (
         water,
-        "immerse add_immersion_impulse dilatation_work add_contents mean_residual residual correct fastest fill "
-        "fill_source",
+        "immerse add_immersion_impulse dilatation_work add_contents residual correct fastest fill fill_source",
     ),
     (water.Fluid, "step place _measure _clear _advance"),
     (poisson, "solve"),
     (multigrid, "coarsen copy_coefficients"),
     (midline, "paint section_motions"),
     (midline.Midline, "markers"),
-    (farfield, "gather induce"),
+    (farfield, "induce"),
     (border.Border, "prepare update_induced fill"),
     (log.Log, "reactions"),
     (simulation, "sample"),
@@ -203,8 +202,11 @@ def tell_patch(steps=6, rounds=4, cells=64):
     return found
 
 
-def tell_batch(count=64, cells=64, end_time=1.0):
-    """Print what a step of one of many small flows takes, on one thread [ms]."""
+def tell_batch(count=64, cells=64, steps=60, rounds=3):
+    """Print the speed of many small flows on one thread, one after the other and in lockstep [M cells/s].
+
+    Both take the same steps of the same flows in the same run, in processor time.
+    """
     grid, found = flow.Grid(cells=(2 * cells, cells), cell=4 / cells, origin=(-2.0, -2.0)), {}
     swing = flow.Oscillation(frequency=0.5, heave=(0.0, 0.1), pitch=0.3)
     bodies = {
@@ -213,13 +215,32 @@ def tell_batch(count=64, cells=64, end_time=1.0):
     }
     for label, body in bodies.items():
         setup = flow.Setup(grid=grid, viscosity=0.01, stream=(1.0, 0.0), bodies=(body,), coarse=True)
-        start = perf_counter()
-        flows = flow.batch([setup] * count, end_time, thread_count=1, progress=False)
-        spent = (perf_counter() - start) / sum(sim.record.time.size for sim in flows)
-        found[f"batch_{label.split()[0]}"] = rate = prod(grid.cells) / spent / 1e6
+        sims = flow.batch([setup] * count, 0.05, thread_count=1, progress=False)
+
+        def one_by_one(sims=sims):
+            for sim in sims:
+                for _ in range(steps):
+                    sim.advance()
+
+        def in_lockstep(sims=sims):
+            for _ in range(steps):
+                for sim in sims:
+                    sim.advance()
+
+        rates = {}
+        for name, advance in (("alone", one_by_one), ("lockstep", in_lockstep)):
+            times = []
+            for _ in range(rounds):
+                start = process_time()
+                advance()
+                times.append(process_time() - start)
+            rates[name] = count * steps * prod(grid.cells) / min(times) / 1e6
+        key = f"batch_{label.split()[0]}"
+        found[key], found[f"{key}_lockstep"] = rates["alone"], rates["lockstep"]
         print(
-            f"{count} flows of {' x '.join(map(str, grid.cells))}, {label}, one thread: {1e3 * spent:.2f} ms a step, "
-            f"{rate:.1f} M cells/s"
+            f"{count} flows of {' x '.join(map(str, grid.cells))}, {label}, one thread: {rates['alone']:.1f} M cells/s "
+            f"(asked: 12.8), {prod(grid.cells) / rates['alone'] / 1e3:.2f} ms a step; step by step in lockstep "
+            f"{rates['lockstep'] / rates['alone']:.2f} times as fast"
         )
     return found
 
@@ -272,7 +293,8 @@ def tell_solve(w, per_cell):
     down, up, dots, first, second = (
         threaded(part.py_func)
         for part in (
-            multigrid._descend_threaded, multigrid._ascend_threaded, poisson._measure, poisson._first_step,
+            multigrid._descend_threaded, multigrid._ascend_threaded, poisson._write_slab_products,
+            poisson._first_step,
             poisson._step
         )
     )  # fmt: skip
@@ -324,10 +346,11 @@ def main():
                     tell_pieces(make, cells, threads, steps)
             else:
                 found |= tell_speed(label, make, cells, steps, far)
+    tell_ratio(found)
     if not chosen.pieces:
         found |= in_form(tell_outline, partial(tell_outline, 48, 60, 1, 2))()
         found |= in_form(tell_patch, partial(tell_patch, 1, 2, 32))()
-        found |= in_form(tell_batch, partial(tell_batch, 2, 32, 0.05))()
+        found |= in_form(tell_batch, partial(tell_batch, 2, 32, 2, 1))()
         for cells in in_form((96, 128), ()):
             found |= tell_swim(cells, far)
     if chosen.keep and many > 1 and not chosen.pieces and not SHORT:
@@ -381,6 +404,14 @@ def tell_speed(label, make, cells, steps, far):
     if len(rates) > 1:
         print(f"{size}, {label}: two threads over one {rates[max(rates)] / rates[1]:.2f}")
     return {f"{key}_{threads}": rate for threads, rate in rates.items()} | {f"{key}_bytes": memory}
+
+
+def tell_ratio(found):
+    """Print the speed of the small plane flow over that of the large one, both of this run."""
+    rates = [found.get(f"eel_{cells}_1") for cells in FLOWS[0][2]]
+    if len(rates) > 1 and all(rates):
+        ratio = rates[0] / rates[1]
+        print(f"moving eel, one thread: the smaller grid has {ratio:.2f} of the rate of the larger one (asked: 0.9)")
 
 
 FLOWS = (

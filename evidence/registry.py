@@ -13,6 +13,7 @@ from evidence import (
     page_measures,
     probes,
     servo_loads,
+    shedding,
     tolerance,
     untrained_policies,
     wall_model,
@@ -104,7 +105,7 @@ _OTHERS = (
     ),
     Kept(
         name="verdicts", modules=("suchus.article.verdict",),
-        renew="make reproduce && python tools/verdict_table.py out",
+        renew="suchus reproduce --all && python tools/verdict_table.py out",
         sources=("claims", *EXPERIMENTS),
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),
@@ -118,6 +119,8 @@ _OTHERS = (
     _flows("sphere_300", _VALIDATE, flows=probes.SPACE),
     _flows("flag", _VALIDATE, "suchus.swimming.coupling"),
     _flows("wall_stress", _VALIDATE, flows=(*probes.PLANE, *probes.SPACE)),
+    replace(_flows("shedding", "make renew NAME=shedding", "evidence.shedding", flows=probes.SPACE),
+            compute=shedding.table),
     _flows("sections", "python tools/sections.py out/sections", "suchus.swimming.water.sections", _ATLAS),
     _flows("calibration", "python tools/calibration.py out/calibration", "suchus.swimming.water", flows=probes.SPACE),
     Kept(

@@ -6,7 +6,6 @@
 space in single precision.
 """
 
-import gc
 import sys
 
 import numpy as np
@@ -62,5 +61,4 @@ def in_space() -> None:
 
 
 if __name__ == "__main__":
-    gc.disable()  # a compiler keeps what it makes: looking for garbage takes a sixth of the processor time
     main(sys.argv[1])

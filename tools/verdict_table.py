@@ -1,4 +1,4 @@
-"""Put what a full ``suchus reproduce`` found into the documentation.
+"""Put what ``suchus reproduce --all`` found into the documentation.
 
 Usage: python tools/verdict_table.py OUT: reads OUT/NAME/outcome.json of every experiment, keeps the result
 ``verdicts``, and writes docs/verdicts.md and the summary of the README. With ``--part``
@@ -27,7 +27,7 @@ _KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models", "why
 
 
 def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
-    """Return what became of each claim, from a folder that ``suchus reproduce`` made, in the order of the table before.
+    """Return what became of each claim, from a folder of ``suchus reproduce --all``, in the order of the table before.
 
     Args:
         out: the folder.
@@ -47,7 +47,7 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
         )
     missing = [claim for claim in RULES if claim not in found]
     if missing:
-        raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce in full first.")
+        raise IncompatibleRecord(f"{out} has no verdict on {', '.join(missing)}; run suchus reproduce --all first.")
     return {claim: found[claim] for claim in dict.fromkeys([*before, *RULES]) if claim in RULES}
 
 

@@ -17,6 +17,8 @@ WORDS: tuple[Word, ...] = get_args(Word)
 WIDEST = 4.0
 """Greatest ratio of the ends of an interval that counts as a prediction [-]: a factor of two to either side; set before
 any was made."""
+NARROW = 2.0
+"""Ratio of the ends of an interval below which it is narrow [-]."""
 _MEETS = (
     Clause("high", ">=", "measured_low", "the interval reaches up to what was measured"),
     Clause("low", "<=", "measured_high", "and down to it"),

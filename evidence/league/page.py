@@ -1,4 +1,4 @@
-"""The page of the league: what was predicted, within which interval, and what was measured; misses first."""
+"""The page of the league: what to trust, what was within its interval, and what missed, with its cause."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -11,18 +11,22 @@ from typing import Any
 import numpy as np
 from matplotlib import colormaps
 
+from evidence.league.causes import cause_of
 from evidence.league.contestant import Contestant, Interval, Value
-from evidence.league.judging import WIDEST, WORDS, Judgement, Word, judged
+from evidence.league.judging import NARROW, WIDEST, Judgement, Word, judged
 from evidence.league.sealing import SEAL, Measured, Prediction, Seal, bound_value, opened, read_prediction, read_seal
 from evidence.league.spread import COVERED
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 from suchus.core.files import path_exists, read_json, write
 from suchus.core.files.provenance import plain
+from suchus.swimming.water.speed_range import DEFAULT_MODEL as RECOMMENDED
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
 """Files of the page."""
 _WIDTH = 118
+AIM = 0.7
+"""Share of the recommended model's judged predictions that should be within a narrow interval [-]."""
 _BOLD: Mapping[Word, str] = {
     "within": "within",
     "within, wide": "within, wide",
@@ -197,35 +201,38 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         picture: path of the figure, as the page names it.
     """
     every = [(one, *row) for one in standings for row in one.judgements()]
-    counts = {word: sum(row[-1].word == word for row in every) for word in WORDS}
     lines = [
         "# The league of predictions",
         "",
         "Real machines and animals, predicted by every model that can be asked before what was measured of them "
-        "is opened. "
-        "`python -m evidence.league` predicts all of them, `python -m evidence.league NAME --out DIR` one, into "
-        "`DIR/NAME/prediction.json`, and "
-        "seals the prediction in `seal.json` with its date, the state of the code and a digest. Only then the "
-        "measurement "
-        "is read, where there is one; nothing is fitted to a contestant's own result, and a sealed prediction is never "
-        "replaced.",
+        "is opened.",
+        "",
+        "## What to trust",
+        "",
+        *_trust(every),
+        "",
+        *_unsteady(standings),
+        f"![Predictions over what was measured, by model; the interval should reach across 1]({picture})",
         "",
         f"An interval covers {COVERED:.0%} of the answers to choices of all numbers that are not known, each drawn "
         "from a plausible range with a source or a reason. An expensive model is asked once or twice; its interval is "
         "that of its answers, widened as the sections' is, or as the widest of the others where sections have no word. "
         "*Within*: measurement and interval meet; *wide*: so, but the interval is wider than a factor of "
-        f"{WIDEST:g}; *missed*: they do not meet. The factor is prediction over measurement.",
+        f"{WIDEST:g}; *missed*: they do not meet. *Narrow* is an interval whose ends differ by less than a factor of "
+        f"{NARROW:g}. The factor is prediction over measurement.",
         "",
-        f"Of {len(every) - counts['not a steady swim']} predictions that could be judged here "
-        f"{counts['missed']} missed, {counts['within, wide']} were "
-        f"within a wide interval and {counts['within']} within a narrower one.",
-        "",
-        *_unsteady(standings),
-        f"![Predictions over what was measured, by model; the interval should reach across 1]({picture})",
+        "Predict all of them with `python -m evidence.league`, and one with `make league NAME=...` or `python -m "
+        "evidence.league NAME --out DIR`. That writes `DIR/NAME/prediction.json` and seals it in `seal.json` with its "
+        "date, the state of the code and a digest. Only then the measurement is read, where there is one; nothing is "
+        "fitted to a contestant's own result, and a sealed prediction is never replaced.",
         "",
         _TRIALS,
         "",
-        "## Misses",
+        "## Hits",
+        "",
+        *_hits(every),
+        "",
+        "## Misses and their causes",
         "",
         *_misses(every),
     ]
@@ -258,11 +265,13 @@ def filled(line: str) -> str:
 
 
 _TRIALS = (
-    "Three things were changed after trials in which public measurements had been opened: the range of the catshark's "
-    "friction, to what was seen on swimming dogfish; how the flow in space is brought to real water; and, after a "
-    "trial of Tunabot, that sections have no word of a beat for which servos are commanded too rarely, and that no "
-    "single answer of a flow stands without an interval. What was measured of AmphiBot, and of the catshark at other "
-    "speeds, is not in this repository and was not seen."
+    "Some measurements were open before the predictions that stand here were sealed. Catsharks, salamander, Tunabot, "
+    "the law and the alligator's slopes were judged in a first round. Then the catshark's wavelength was taken as "
+    "printed, animals were made to swing their tails as filmed, and a controller of the cadence was put on the slopes. "
+    "The lampreys and the prickleback were measured by a program that showed frequency, wave and envelope alone; their "
+    "speeds were opened after the seal. The prickleback's sections were asked again after it, since its smallest and "
+    "largest bodies could not swim in one batch. The eel's speed was known. What was measured of AmphiBot, and of the "
+    "catshark at other speeds, is not in this repository and was not seen."
 )
 _OWN = (
     "## A measurement and a contestant of your own",
@@ -290,19 +299,85 @@ def _unsteady(standings: Sequence[LeagueEntry]) -> list[str]:
     return ["Of these swims no prediction is judged: what was measured is not a steady swim.", "", *reasons, ""]
 
 
-def _misses(every: Sequence[tuple[LeagueEntry, str, str, Interval, Measured, Judgement]]) -> list[str]:
+Row = tuple[LeagueEntry, str, str, Interval, Measured, Judgement]
+"""Contestant, quantity, model, prediction, measurement and verdict."""
+
+
+def _trust(every: Sequence[Row]) -> list[str]:
+    """Return what the judged predictions say of each model, the recommended one first."""
+    judged_rows = [row for row in every if row[-1].word != "not a steady swim"]
+    models = sorted({row[2] for row in judged_rows}, key=lambda model: (model != RECOMMENDED, model))
+    lines = [
+        "| model | judged | within | of these narrow | within, wide | missed | median factor off |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    counts = {}
+    for model in models:
+        rows = [row for row in judged_rows if row[2] == model]
+        words = [row[-1].word for row in rows]
+        narrow = sum(row[-1].word == "within" and _is_narrow(row[3]) for row in rows)
+        off = float(np.exp(np.median([abs(np.log(max(abs(row[-1].ratio), 1e-9))) for row in rows])))
+        counts[model] = len(rows), words.count("within"), narrow
+        name = f"**{model}**" if model == RECOMMENDED else model
+        lines.append(
+            f"| {name} | {len(rows)} | {words.count('within')} | {narrow} | {words.count('within, wide')} | "
+            f"{words.count('missed')} | {off:.2g} |"
+        )
+    total = len(judged_rows)
+    missed = sum(row[-1].word == "missed" for row in judged_rows)
+    first = [f"Of {total} predictions that could be judged here {missed} missed."]
+    if RECOMMENDED in counts:
+        count, within, narrow = counts[RECOMMENDED]
+        first = [
+            f"Take {RECOMMENDED}, with the interval: {within} of its {count} predictions that could be judged met the "
+            f"measurement, {narrow} of them with an interval narrower than a factor of {NARROW:g}, where the aim is "
+            f"{AIM:.0%}. Of all {total} predictions that could be judged here {missed} missed."
+        ]
+    return [*first, "", *lines] if judged_rows else first
+
+
+def _is_narrow(interval: Interval) -> bool:
+    """Return whether the ends of an interval, of each of its numbers, differ by less than a factor of ``NARROW``."""
+    lows, highs = np.atleast_1d(np.asarray(interval.low, float)), np.atleast_1d(np.asarray(interval.high, float))
+    return bool(np.all((lows * highs > 0.0) & (np.abs(np.log(np.abs(highs / lows))) < np.log(NARROW))))
+
+
+def _hits(every: Sequence[Row]) -> list[str]:
+    """Return the table of predictions whose interval met the measurement."""
+    hits = [row for row in every if row[-1].word in ("within", "within, wide")]
+    if not hits:
+        return ["None."]
+    hits.sort(key=lambda row: (row[2] != RECOMMENDED, row[2], abs(np.log(max(abs(row[-1].ratio), 1e-9)))))
+    lines = [
+        "| contestant | quantity | model | prediction | measured | factor | interval |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in hits:
+        width = "narrow" if _is_narrow(row[3]) else "wide" if row[-1].word == "within, wide" else ""
+        lines.append(f"{_prediction_row(row)} {width} |")
+    return lines
+
+
+def _misses(every: Sequence[Row]) -> list[str]:
+    """Return the table of predictions that missed, with what is known of the cause."""
     missed = [row for row in every if row[-1].word == "missed"]
     if not missed:
         return ["None."]
     missed.sort(key=lambda row: -abs(np.log(abs(row[-1].ratio))) if row[-1].ratio else -np.inf)
-    lines = ["| contestant | quantity | model | prediction | measured | factor |", "|---|---|---|---|---|---|"]
-    for one, quantity, rung, at, truth, word in missed:
-        lines.append(
-            f"| {one.name} | {one.words[quantity]} [{one.units[quantity]}] | {rung} | {shown(at.value)} "
-            f"({shown(at.low)} to "
-            f"{shown(at.high)}) | {_truth(truth)} | {word.ratio:.2g} |"
-        )
-    return lines
+    lines = [
+        "| contestant | quantity | model | prediction | measured | factor | cause |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    return lines + [f"{_prediction_row(row)} {cause_of(row[0].name, row[2])} |" for row in missed]
+
+
+def _prediction_row(row: Row) -> str:
+    """Return the cells that hits and misses share, in Markdown."""
+    one, quantity, rung, at, truth, word = row
+    return (
+        f"| {one.name} | {one.words[quantity]} [{one.units[quantity]}] | {rung} | {shown(at.value)} "
+        f"({shown(at.low)} to {shown(at.high)}) | {_truth(truth)} | {word.ratio:.2g} |"
+    )
 
 
 def _given(seal: Seal) -> list[str]:

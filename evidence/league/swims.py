@@ -6,7 +6,7 @@ A swim is asked at a frequency, or at the speed that it is to hold; then its fre
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import hypot, isfinite, pi
+from math import degrees, hypot, isfinite, pi, radians
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +31,8 @@ STATIONS = 65
 """Points along the midline in the theories [-]; they change the speed by less than 1 % from 257."""
 THEORY_DRAWS, SECTION_DRAWS = 32, 24
 """Choices of the numbers in a theory and in sections [-]."""
+_SEARCHES = 6
+"""Greatest number of swims in a search for a speed and a swing [-]."""
 FASTEST = 20.0
 """Fastest beat that is tried [Hz]."""
 LEAST_TICKS = 16
@@ -46,6 +48,14 @@ _COASTING = 3.0
 """Distance that a body coasts while its deceleration is read [body length]."""
 _DEEP = 3.0
 """Depth of a lake [body length]."""
+MAX_SWING_ERROR = 0.2
+"""Greatest error of the swing of the tail of a swim that is to be one that was filmed [-]: thrust goes with its square.
+Set before any was judged by it."""
+_SWING_TOLERANCE, _SPEED_TOLERANCE = 0.03, 0.01
+"""Errors of the swing of the tail and of the speed at which a search for them ends [-]."""
+MAX_PITCH, MAX_HEEL = radians(20.0), radians(45.0)
+"""Greatest mean pitch and heel of a steady swim [rad]: beyond, a level course is no course along the body, and bends
+to the side are more up and down than to the side."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +74,8 @@ class ModelSwimmer:
     """Added mass over that of ideal water [-]."""
     ramp: float = 0.5
     """Part of the first period in which the motion grows; 0 for measured curves [cycle]."""
+    bend: float = 1.0
+    """Factor by which the bends of its gait were scaled so that the tail swings as filmed [-]."""
 
 
 class SwimPrediction(NamedTuple):
@@ -81,6 +93,10 @@ class SwimPrediction(NamedTuple):
     """Of the tail's tip, from end to end [m]; NaN where it is not read."""
     coast: float
     """k in dU/dt = -k U^2 with the posture held [1/m]; NaN where it is not read."""
+    pitch: float = np.nan
+    """Mean pitch in the last cycles, nose up positive [rad]; NaN where the model knows none."""
+    heel: float = np.nan
+    """Mean size of the heel in the last cycles [rad]; NaN where the model knows none."""
 
 
 Build = Callable[[Numbers, float | None], ModelSwimmer]
@@ -107,14 +123,18 @@ class SwimTask:
     """Frequency from which that of a speed to be held is sought [Hz]."""
     coasts: bool = False
     """Whether it is to coast with its posture held."""
+    filmed_swing: Callable[[Numbers], float] | None = None
+    """Way of the tail's tip from side to side that was filmed, from the numbers [m]: the bends of the gait are scaled
+    until the free body swings its tail so far; None where the joints' angles were measured."""
 
 
-def rungs(asked: SwimTask, *, space: bool = True) -> dict[str, Predictor]:
+def rungs(asked: SwimTask, *, space: bool = True, section_draws: int = SECTION_DRAWS) -> dict[str, Predictor]:
     """Return every model that can be asked of a swimmer.
 
     Args:
         asked: what is asked.
         space: whether the flow in space can be.
+        section_draws: choices of the numbers in sections [-].
     """
     found = {
         name: Predictor(words=words, work=partial(_by_theory, model, asked), draws=THEORY_DRAWS)
@@ -126,7 +146,7 @@ def rungs(asked: SwimTask, *, space: bool = True) -> dict[str, Predictor]:
     found["sections"] = Predictor(
         words="six degrees of freedom, with drag, added mass and shed momentum of each section",
         work=partial(_by_sections, asked),
-        draws=SECTION_DRAWS,
+        draws=section_draws,
     )
     found["slice"] = Predictor(
         words="the flow around a slice of unlimited depth, in thick water",
@@ -152,7 +172,7 @@ def _by_theory(model: Model, asked: SwimTask, choices: Sequence[Numbers], progre
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
         try:
-            swimmer, swum = _held(
+            swimmer, swum = held_swim(
                 asked, numbers, partial(theory, model, coasts=asked.coasts, starts=asked.target_speed is None)
             )
             found.append(asked.read_quantities(numbers, swimmer, swum))
@@ -161,27 +181,76 @@ def _by_theory(model: Model, asked: SwimTask, choices: Sequence[Numbers], progre
     return found
 
 
-def _held(
+def held_swim(
     asked: SwimTask, numbers: Numbers, swim: Callable[[ModelSwimmer], SwimPrediction]
 ) -> tuple[ModelSwimmer, SwimPrediction]:
-    """Return a swim at its own frequency, or at that which holds a speed; speed is nearly in proportion to it.
+    """Return a swim at its own frequency or at that which holds a speed, with the filmed swing where there is one.
+
+    Speed is nearly in proportion to the frequency and to the swing, and the swing to the bends.
+
+    Args:
+        asked: the task.
+        numbers: choice of the numbers.
+        swim: lets a swimmer swim.
 
     Raises:
-        NotConverged: it does not swim forward.
+        NotConverged: it does not swim forward where it is to hold a speed, or its tail cannot swing as filmed.
     """
-    if asked.target_speed is None:
-        swimmer = asked.build(numbers, None)
-        return swimmer, swim(swimmer)
-    wanted, frequency = asked.target_speed(numbers), asked.start
-    for _ in range(4):
-        swimmer = asked.build(numbers, frequency)
+    target = None if asked.target_speed is None else asked.target_speed(numbers)
+    frequency, bend = None if target is None else asked.start, 1.0
+    for _ in range(_SEARCHES):
+        swimmer = _bent(asked.build(numbers, frequency), bend)
         swum = swim(swimmer)
-        if not swum.speed > 0.0:
+        if target is not None and not swum.speed > 0.0:
             raise NotConverged(f"at {frequency:.3g} Hz it does not swim forward, so that it holds no speed.")
-        if abs(swum.speed / wanted - 1.0) < 0.01:
+        stretch = swing_ratio(asked, numbers, swum)
+        holds = target is None or abs(swum.speed / target - 1.0) < _SPEED_TOLERANCE
+        if holds and abs(stretch - 1.0) < _SWING_TOLERANCE:
             break
-        frequency *= wanted / swum.speed
-    return swimmer, _at_speed(swum, wanted)
+        bend = _next_bend(bend, stretch)
+        if target is not None and frequency is not None:
+            frequency *= target / swum.speed / stretch
+    reason = _unfilmed(asked, numbers, swum)
+    if reason:
+        raise NotConverged(reason)
+    return swimmer, swum if target is None else _at_speed(swum, target)
+
+
+def _bent(swimmer: ModelSwimmer, bend: float) -> ModelSwimmer:
+    """Return a swimmer whose gait has its lateral bends scaled by a factor."""
+    return swimmer if bend == 1.0 else replace(swimmer, gait=swimmer.gait.bent(bend), bend=bend)
+
+
+def _next_bend(bend: float, stretch: float) -> float:
+    """Return the factor on the bends for the next try, no farther than a factor of two from the film's."""
+    return float(np.clip(bend * stretch, 0.5, 2.0))
+
+
+def swing_ratio(asked: SwimTask, numbers: Numbers, swum: SwimPrediction) -> float:
+    """Return the filmed swing of the tail over that of a swim [-]; 1 where none was filmed or read."""
+    if asked.filmed_swing is None or not swum.swing > 0.0:
+        return 1.0
+    return asked.filmed_swing(numbers) / swum.swing
+
+
+def _unfilmed(asked: SwimTask, numbers: Numbers, swum: SwimPrediction) -> str:
+    """Return why a swim is not the one that was filmed; empty where it is, or where none was filmed."""
+    stretch = swing_ratio(asked, numbers, swum)
+    if abs(1.0 / stretch - 1.0) <= MAX_SWING_ERROR or asked.filmed_swing is None:
+        return ""
+    return (
+        f"not a steady swim as filmed: its tail swings {swum.swing:.3g} m from side to side, and "
+        f"{asked.filmed_swing(numbers):.3g} m were filmed."
+    )
+
+
+def out_of_trim(swum: SwimPrediction) -> str:
+    """Return why a swim keeps no trim; empty where it does, or where the model knows neither pitch nor heel."""
+    if abs(swum.pitch) > MAX_PITCH:
+        return f"not a steady swim: it pitches by {degrees(swum.pitch):.0f} degrees in the mean."
+    if swum.heel > MAX_HEEL:
+        return f"not a steady swim: it heels by {degrees(swum.heel):.0f} degrees in the mean."
+    return ""
 
 
 def _at_speed(swum: SwimPrediction, wanted: float) -> SwimPrediction:
@@ -270,36 +339,91 @@ def _coast(outline: Outline, bent: Motion, model: Model, swimmer: ModelSwimmer, 
 
 
 def _by_sections(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
-    if asked.target_speed is None:
-        swimmers = [asked.build(numbers, None) for numbers in choices]
-        if not _commanded(swimmers[0]):
-            raise OutsideLimits(
-                f"its servos are commanded every {1e3 * control_period(swimmers[0].robot):g} ms, "
-                f"{_ticks(swimmers[0]):.3g} times a cycle at {swimmers[0].gait.frequency:g} Hz; "
-                f"{LEAST_TICKS} are needed."
-            )
-        swums = sections(swimmers, cycles=asked.cycles, coasts=asked.coasts, progress=progress)
-        return [_sound(asked, *one) for one in zip(choices, swimmers, swums, strict=True)]
-    wanted = [asked.target_speed(numbers) for numbers in choices]
-    frequencies = []
-    for numbers in choices:
+    """Return the quantities of each choice, in six degrees of freedom.
+
+    Raises:
+        OutsideLimits: servos are commanded too rarely, or the swim with the most likely numbers is not steady.
+    """
+    swimmers, swums = free_swims(asked, choices, progress)
+    if asked.target_speed is None and not _commanded(swimmers[0]):
+        raise OutsideLimits(
+            f"its servos are commanded every {1e3 * control_period(swimmers[0].robot):g} ms, "
+            f"{_ticks(swimmers[0]):.3g} times a cycle at {swimmers[0].gait.frequency:g} Hz; "
+            f"{LEAST_TICKS} are needed."
+        )
+    if reason := out_of_trim(swums[0]) or _unfilmed(asked, choices[0], swums[0]):
+        raise OutsideLimits(reason)
+    return [_sound(asked, *one) for one in zip(choices, swimmers, swums, strict=True)]
+
+
+def steady_swims(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[SwimPrediction | None]:
+    """Return the swim of each choice in six degrees of freedom; None where it is not steady, or not as filmed.
+
+    Args:
+        asked: the task, at frequencies of its own.
+        choices: choices of the numbers.
+        progress: told the share that is done.
+
+    Raises:
+        OutsideLimits: the swim with the most likely numbers is not steady, or not as filmed.
+    """
+    _, swums = free_swims(asked, choices, progress)
+    reasons = [
+        out_of_trim(swum) or _unfilmed(asked, numbers, swum) for numbers, swum in zip(choices, swums, strict=True)
+    ]
+    if reasons[0]:
+        raise OutsideLimits(reasons[0])
+    return [None if reason or not isfinite(swum.speed) else swum for reason, swum in zip(reasons, swums, strict=True)]
+
+
+def free_swims(
+    asked: SwimTask, choices: Sequence[Numbers], progress: Progress
+) -> tuple[list[ModelSwimmer], list[SwimPrediction]]:
+    """Return swimmers and their swims, at the speed to be held and with the filmed swing where there is one.
+
+    Frequency and bends begin at those of resistive theory. Of a swim whose servos are commanded too rarely in
+    the first choice none is computed.
+
+    Args:
+        asked: the task.
+        choices: choices of the numbers.
+        progress: told the share that is done.
+    """
+    frequencies: list[float | None] = [None if asked.target_speed is None else asked.start] * len(choices)
+    bends = [1.0] * len(choices)
+    searched = asked.target_speed is not None or asked.filmed_swing is not None
+    for i, numbers in enumerate(choices if searched else ()):
         try:
-            frequencies.append(_held(asked, numbers, partial(theory, resistive, starts=False))[1].frequency)
+            swimmer, swum = held_swim(asked, numbers, partial(theory, resistive, starts=False))
         except (NotConverged, OutsideLimits, InvalidDesign):
-            frequencies.append(asked.start)
-    for i in range(3):
-        swimmers = [asked.build(*pair) for pair in zip(choices, frequencies, strict=True)]
-        swums = sections(swimmers, cycles=asked.cycles, progress=portion(progress, i, 3))
-        factors = [u / swum.speed if swum.speed > 0.0 else np.nan for u, swum in zip(wanted, swums, strict=True)]
-        frequencies = [
-            min(f * float(np.clip(factor, 0.4, 2.5)), FASTEST) if isfinite(factor) else f
-            for f, factor in zip(frequencies, factors, strict=True)
-        ]
-    found = []
-    for numbers, swimmer, swum, speed in zip(choices, swimmers, swums, wanted, strict=True):
-        near = swum.speed > 0.0 and 0.7 < swum.speed / speed < 1.4 and _commanded(swimmer)
-        found.append(asked.read_quantities(numbers, swimmer, _at_speed(swum, speed)) if near else {})
-    return found
+            continue
+        bends[i] = swimmer.bend
+        if asked.target_speed is not None:
+            frequencies[i] = swum.frequency
+    passes = 3 if asked.target_speed is not None else 2 if searched else 1
+    for i in range(passes):
+        swimmers = [_bent(asked.build(*pair), bend) for *pair, bend in zip(choices, frequencies, bends, strict=True)]
+        if asked.target_speed is None and not _commanded(swimmers[0]):
+            return swimmers, [_NO_SWIM] * len(swimmers)
+        last = i == passes - 1
+        swums = sections(
+            swimmers, cycles=asked.cycles, coasts=asked.coasts and last, progress=portion(progress, i, passes)
+        )
+        if last:
+            break
+        for k, (numbers, swum) in enumerate(zip(choices, swums, strict=True)):
+            stretch = swing_ratio(asked, numbers, swum)
+            if not isfinite(stretch * swum.speed):
+                continue
+            bends[k] = _next_bend(bends[k], stretch)
+            if asked.target_speed is not None and swum.speed > 0.0:
+                factor = asked.target_speed(numbers) / swum.speed / stretch
+                frequencies[k] = min((frequencies[k] or asked.start) * float(np.clip(factor, 0.4, 2.5)), FASTEST)
+    return swimmers, swums
+
+
+_NO_SWIM = SwimPrediction(frequency=np.nan, speed=np.nan, power=np.nan, periods=(), swing=np.nan, coast=np.nan)
+"""A swim that was not computed."""
 
 
 def _ticks(swimmer: ModelSwimmer) -> float:
@@ -312,7 +436,14 @@ def _commanded(swimmer: ModelSwimmer) -> bool:
 
 
 def _sound(asked: SwimTask, numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
-    return asked.read_quantities(numbers, swimmer, swum) if isfinite(swum.speed) else {}
+    """Return the quantities of a swim; none of one that diverged, is not steady, or misses its speed."""
+    if not isfinite(swum.speed) or out_of_trim(swum) or _unfilmed(asked, numbers, swum):
+        return {}
+    if asked.target_speed is None:
+        return asked.read_quantities(numbers, swimmer, swum)
+    speed = asked.target_speed(numbers)
+    near = swum.speed > 0.0 and 0.7 < swum.speed / speed < 1.4 and _commanded(swimmer)
+    return asked.read_quantities(numbers, swimmer, _at_speed(swum, speed)) if near else {}
 
 
 def sections(
@@ -321,29 +452,36 @@ def sections(
     """Return swims in six degrees of freedom, from rest at the surface or just below, by the forces of sections.
 
     Args:
-        swimmers: bodies of one length.
+        swimmers: bodies, those of one control period in one batch.
         cycles: of each [-].
         coasts: whether to read how they coast, with their postures held.
         progress: told the share that is done.
     """
-    runs = [
-        Run(
-            robot=one.robot,
-            gait=one.gait,
-            lake=_lake(one),
-            control=Swimming(ramp=0.0 if one.gait.curves else one.ramp * one.gait.period),
-            label=str(i),
-        )
-        for i, one in enumerate(swimmers)
-    ]
     shares = (0.0, 0.6, 1.0) if coasts else (0.0, 1.0)
-    longest = max(one.gait.period for one in swimmers)
-    record = simulate(
-        runs,
-        duration=cycles * longest,
-        progress=lambda stage, share: progress(stage, shares[0] + share * (shares[1] - shares[0])),
-    )
-    found = [_of_run(record.isel(run=i), one, cycles) for i, one in enumerate(swimmers)]
+    groups: dict[float, list[int]] = {}
+    for i, one in enumerate(swimmers):
+        groups.setdefault(control_period(one.robot), []).append(i)
+    swums: dict[int, SwimPrediction] = {}
+    for number, group in enumerate(groups.values()):
+        runs = [
+            Run(
+                robot=swimmers[i].robot,
+                gait=swimmers[i].gait,
+                lake=_lake(swimmers[i]),
+                control=Swimming(ramp=0.0 if swimmers[i].gait.curves else swimmers[i].ramp * swimmers[i].gait.period),
+                label=str(i),
+            )
+            for i in group
+        ]
+        longest = max(swimmers[i].gait.period for i in group)
+        part = portion(progress, number, len(groups))
+        record = simulate(
+            runs,
+            duration=cycles * longest,
+            progress=lambda stage, share, part=part: part(stage, shares[0] + share * (shares[1] - shares[0])),
+        )
+        swums |= {i: _of_run(record.isel(run=k), swimmers[i], cycles) for k, i in enumerate(group)}
+    found = [swums[i] for i in range(len(swimmers))]
     if not coasts:
         return found
     speeds = [abs(swum.speed) if isfinite(swum.speed) else 0.1 for swum in found]
@@ -374,6 +512,8 @@ def _of_run(run, one: ModelSwimmer, cycles: int) -> SwimPrediction:  # type: ign
     way = at[-1] - at[-1 - LAST]
     aside = (tip @ np.array([-way[1], way[0]])) / max(hypot(*way), 1e-12)
     drift = np.polyval(np.polyfit(time[last], aside, 1), time[last])
+    attitude = run.orientation.transpose("time", "wxyz").values[last]
+    left, up = (rotation.rotate(attitude, np.array(axis)) for axis in ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]))
     return SwimPrediction(
         frequency=1.0 / period,
         speed=float(speeds[-LAST:].mean()),
@@ -381,6 +521,8 @@ def _of_run(run, one: ModelSwimmer, cycles: int) -> SwimPrediction:  # type: ign
         periods=tuple(float(value) for value in speeds),
         swing=float(np.ptp(aside - drift)),
         coast=np.nan,
+        pitch=float(np.arcsin(np.clip(facing[last, 2], -1.0, 1.0)).mean()),
+        heel=float(np.abs(np.arctan2(left[:, 2], up[:, 2])).mean()),
     )
 
 
@@ -434,9 +576,17 @@ def _root(robot: Robot) -> float:
 # --- the flow -----------------------------------------------------------------------------------------------------
 
 
+def _flow_swimmer(asked: SwimTask, numbers: Numbers) -> ModelSwimmer:
+    """Return the swimmer of a flow, with the bends with which resistive theory swings the tail as filmed."""
+    swimmer = asked.build(numbers, asked.start if asked.target_speed else None)
+    if asked.filmed_swing is None:
+        return swimmer
+    return _bent(swimmer, held_swim(asked, numbers, partial(theory, resistive, starts=False))[0].bend)
+
+
 def _by_slice(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
-    swimmer = asked.build(numbers, asked.start if asked.target_speed else None)
+    swimmer = _flow_swimmer(asked, numbers)
     swum = resolved(swimmer, axes=2, cells=SLICE_CELLS, cycles=asked.resolved_cycles, progress=progress)
     high = 2.0 * float(np.mean(Outline(swimmer.robot, STATIONS).silhouette.half_height))
     return [_answer(asked, numbers, swimmer, swum._replace(power=high * swum.power))]
@@ -444,7 +594,7 @@ def _by_slice(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -
 
 def _by_space(asked: SwimTask, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     numbers = choices[0]
-    swimmer = asked.build(numbers, asked.start if asked.target_speed else None)
+    swimmer = _flow_swimmer(asked, numbers)
     grids = []
     for i, cells in enumerate(SPACE_CELLS):
         grids.append(

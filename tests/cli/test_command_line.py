@@ -58,7 +58,7 @@ BAD = {
     "run wave stray": "one word too many",
     "run wave --out /dev/null/here": "cannot be written",
     "reproduce --out /dev/null/here": "cannot be written",
-    "reproduce --slow": "there is --out, --quick, --jobs",
+    "reproduce --slow": "there is --out, --quick, --all, --jobs",
     "reproduce --jobs 0": "at least 1",
     "list everything": "takes no 'everything'",
 }
@@ -173,8 +173,15 @@ def test_reproduce_ends_with_the_path_of_the_page(capsys, tmp_path):
 def test_reproduce_leaves_out_what_does_not_reproduce_the_article(capsys, tmp_path, monkeypatch):
     monkeypatch.setattr(type(suchus.experiments.catalog.EXPERIMENTS["broken"]), "reproduces", False)
     assert main(["reproduce", "--out", str(tmp_path)]) == 0
-    assert "broken" not in (tmp_path / "report.html").read_text()
-    assert capsys.readouterr().err.count("wave:") == 1
+    page = (tmp_path / "report.html").read_text()
+    assert page.count("broken") == 1
+    assert "Not run, since they judge no claim of the article:\nbroken. " in page
+    err = capsys.readouterr().err
+    assert err.count("wave:") == 1
+    assert "not run, since they judge no claim of the article: broken; suchus reproduce --all does" in err
+    assert main(["reproduce", "--all", "--out", str(tmp_path)]) == 1
+    assert "it broke, as it should" in (tmp_path / "report.html").read_text()
+    assert "Not run" not in (tmp_path / "report.html").read_text()
 
 
 @pytest.mark.usefixtures("broken")

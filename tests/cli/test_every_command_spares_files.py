@@ -141,7 +141,10 @@ CASES = {
     ],
     "view": [],
     "page": [Case(words=("page", "strider", "--out", "made/it.html"), doubles=no_engine)],
-    "replay": [Case(words=("replay", "walk.nc", "--out", "made/it.html"), needs=("walk.nc",))],
+    "replay": [
+        Case(words=("replay", "walk.nc", "--out", "made/it.html"), needs=("walk.nc",)),
+        Case(words=("replay", "walk.nc", "--video", "made/it.webp"), needs=("walk.nc",)),
+    ],
     "lessons": [Case(words=("lessons", "--out", "made"), long=True)],
     "study": [
         Case(

@@ -91,3 +91,13 @@ def test_what_reproduce_leaves_out_judges_nothing_and_is_named_in_the_docs():
     named = ", ".join(f"`{name}`" for name in left_out[:-1]) + f" and `{left_out[-1]}`"
     page = (Path(__file__).parents[2] / "docs" / "command_line.md").read_text(encoding="utf-8")
     assert f"runs every experiment but {named}, " in page
+
+
+def test_what_no_verdict_needs_is_asked_for_by_another_command_and_is_another_result(task):
+    short = ExperimentTask(name="displacement", out=task.out, quick=False)
+    whole = replace(short, whole=True)
+    assert short.command == "suchus run displacement --for-verdicts"
+    assert whole.command == "suchus run displacement"
+    assert short.experiment.settings() != whole.experiment.settings()
+    assert replace(short, name="leg_kinematics").command == "suchus run leg_kinematics"  # which needs all of it
+    assert replace(short, quick=True, whole=True).command == "suchus run displacement --quick"

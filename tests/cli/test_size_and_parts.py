@@ -3,9 +3,11 @@
 import csv
 from dataclasses import replace
 from math import inf, nan
+from pathlib import Path
 
 import pytest
 
+from pages.blocks import blocks
 from suchus.apps.cli import main
 from suchus.apps.report.size_page import answer
 from suchus.hardware import cases
@@ -51,6 +53,8 @@ def test_what_makes_no_sense_is_refused_in_a_sentence_and_nothing_is_written(wor
          "allowed after 23 min and would reach 78 °C"),
         ({"spine_yaw_1": (1380.0, 78.4), "LF_yaw": (60.0, inf)}, "2 servos get too warm, LF_yaw first: in spine_only "
          "it passes the 70 °C that are allowed after 1 min and would never stop warming"),
+        ({"spine_yaw_1": (1380.0, 70.2)}, "spine_yaw_1 gets too warm: in spine_only it passes the 70 °C that are "
+         "allowed after 23 min and would reach 70.2 °C"),
     ],
 )  # fmt: skip
 def test_a_servo_of_the_design_that_gets_too_warm_is_told_in_a_sentence(warm, said):
@@ -67,6 +71,9 @@ def test_sizing_writes_the_servos_that_are_enough_and_a_robot_that_has_them(tmp_
     family = "Feetech STS 12 V"
     assert main(["size", "caiman", "belly_crawl", "--family", family]) == 0
     out, folder = capsys.readouterr().out, tmp_path / "export" / "caiman_size"
+    page = (Path(__file__).parents[2] / "docs" / "build_one.md").read_text(encoding="utf-8")
+    answers = [block.text for block in blocks(page) if block.language == "text"]
+    assert answers[0] == out  # renew it by hand: it is what the page's first command prints
     assert family in out
     assert "EUR" in out
     with (folder / "families.csv").open() as file:

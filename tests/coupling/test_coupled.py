@@ -221,6 +221,35 @@ def test_energy_closes_and_little_is_left_over():
     assert record.water_force.values == pytest.approx(record.link_force.values.sum(axis=1))
 
 
+def test_the_recorded_power_of_the_servos_is_their_work():
+    """What servos do counts over every physics step; samples of torque and speed miss a quarter of it."""
+    swim, record, _ = swum()
+    dt = float(record.time[1] - record.time[0])
+    work = np.cumsum([row[0] for row in swim.series.work])
+    summed = float(record.servo_power[1:].sum()) * dt
+    assert summed == pytest.approx(work[-1], rel=1e-2)
+    assert float(record.servo_absolute_power[1:].sum()) * dt == pytest.approx(swim.effort, rel=1e-9)
+    sampled = float((record.servo_torque * record.servo_velocity)[1:].sum()) * dt
+    assert abs(sampled - work[-1]) > 0.1 * work[-1]
+    mean, square = record.servo_mean_torque.values, record.servo_mean_square_torque.values
+    assert (square >= mean**2 - 1e-12).all()
+    assert (record.servo_peak_torque.values[1:] >= np.sqrt(square[1:]) - 1e-12).all()
+
+
+@pytest.mark.parametrize(("cells", "said"), [(40, True), (128, False)])
+def test_a_slice_that_is_much_thicker_than_the_body_is_said(cells, said):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", Doubtful)
+        Swim(swim_run(water=Slice(cells=cells, reynolds=600.0)), 0.1)
+    words = [str(one.message) for one in told if "thickened to 3.5 cells" in str(one.message)]
+    assert bool(words) == said
+    if said:
+        enough = int(words[0].split("at least ")[1].split()[0])
+        outline = Outline(robot(), 129)
+        assert coupled.thickening(outline, 1.75, enough) <= coupled.MAX_THICKENING
+        assert coupled.thickening(outline, 1.75, int(enough / 1.1)) > coupled.MAX_THICKENING
+
+
 def test_a_run_in_a_flow_keeps_to_its_rung():
     run = swim_run(water="slice")
     assert run.solved_flow == Slice()

@@ -65,6 +65,7 @@ def lacks(text):
 
 
 GUIDE = menu()["Guide"]
+EVIDENCE = [name for name in menu()["Evidence"] if name.endswith("_evidence")]
 
 
 def test_the_guide_has_few_pages_and_every_page_has_its_tab():
@@ -79,6 +80,13 @@ def test_the_guide_has_few_pages_and_every_page_has_its_tab():
 @pytest.mark.parametrize("name", GUIDE)
 def test_a_page_begins_with_what_one_can_do_a_picture_and_a_command(name):
     assert lacks(page(name)) == []
+
+
+@pytest.mark.parametrize("name", EVIDENCE)
+def test_a_page_of_evidence_begins_with_what_was_asked_and_found(name):
+    start = page(name).partition("\n## ")[0]
+    assert re.search(r"^\*\*Asked\.\*\* .*?^\*\*Found\.\*\*\s+\S", start, re.MULTILINE | re.DOTALL)
+    assert "```sh\n" in start
 
 
 def test_a_page_that_begins_otherwise_is_noticed():
@@ -100,3 +108,10 @@ def test_words_are_counted_without_code_and_addresses():
 @pytest.mark.parametrize("query", QUERIES)
 def test_a_search_finds_the_page(query):
     assert all(re.search(rf"\b{word}\b", page(QUERIES[query]), re.IGNORECASE) for word in query.split())
+
+
+def test_the_glossary_is_in_alphabetical_order():
+    glossary = page("conventions").partition("\n## Glossary\n")[2]
+    terms = re.findall(r"^\*\*(.+?)\*\*\n:", glossary, re.MULTILINE)
+    assert len(terms) > 20
+    assert terms == sorted(terms, key=str.lower)

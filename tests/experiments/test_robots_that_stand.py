@@ -5,10 +5,10 @@ from math import isnan
 
 import pytest
 
-from suchus.apps.report.rendering import UNKNOWN, number, quantity
 from suchus.experiments.catalog.displacement.experiment import Displacement
 from suchus.experiments.catalog.speed_range.experiment import SpeedRange
 from suchus.robot.gaits import GAITS
+from suchus.visual.pages import UNKNOWN, number, quantity
 
 STANDING = replace(GAITS["belly_crawl"].strode(0.0).bent(0.0), name="standing")
 

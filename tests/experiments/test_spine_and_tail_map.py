@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.core.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign, UnsuitedRobot
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.spine_and_tail_map.cells import (
     ARMS,
@@ -236,3 +236,36 @@ def test_settings_that_cannot_be_are_refused(settings, words):
 def test_a_short_run_says_that_it_is_too_short():
     assert QUESTION.quick().too_short().startswith("Too short to answer: repeats is 2, and 6 at least are needed.")
     assert QUESTION.too_short() == ""
+
+
+@pytest.mark.parametrize("name", ["strider", "pleurobot", "salamander", "long_tail"])
+def test_another_body_searches_in_its_own_size(name):
+    """Without a tail no condition changes it; bumps grow with the body, grains are the same ones."""
+    robot = ROBOTS[name]
+    question = QUESTION.for_robot(robot)
+    cells = question.cells()
+    has_tail = robot.root_index < len(robot.axis) - 1
+    assert question.has_tail is has_tail
+    assert ("tail" in {cell.axis for cell in cells}) is has_tail
+    assert question.strengths == QUESTION.strengths
+    if name in ("strider", "salamander"):
+        ratio = robot.length / CAIMAN.length
+        assert question.bump_heights == pytest.approx([ratio * height for height in QUESTION.bump_heights])
+    searches = arm_searches(robot, question.gait)
+    bends = {vary.field for vary in searches[FREE].vary} - {vary.field for vary in searches[STILL].vary}
+    assert "gait.trunk_bend" in bends
+    shares = dict.fromkeys((vary.field for vary in searches[STILL].vary), 0.5)
+    assert value_at(searches[STILL].candidate(shares).gait, "trunk_bend") == 0.0
+
+
+def test_a_body_without_a_tail_is_told_of_its_trunk():
+    question = replace(QUESTION.for_robot(ROBOTS["strider"]).quick(), repeats=6)
+    text = question.explain({name: one.value for name, one in question.measure(record()).items()})
+    assert "a bending trunk takes the robot farther in 2 of 2" in text
+    assert "tail" not in text
+
+
+@pytest.mark.parametrize(("name", "lack"), [("swimmer", "limbs"), ("salamandra", "limbs of several hinges")])
+def test_bodies_that_cannot_be_compared_are_refused(name, lack):
+    with pytest.raises(UnsuitedRobot, match=lack):
+        QUESTION.for_robot(ROBOTS[name])

@@ -7,10 +7,12 @@ import pytest
 import xarray as xr
 
 from suchus.core.errors import Doubtful, InvalidDesign, UnreadableFile
+from suchus.core.progress import silent
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.catalog.swim_free.in_flow import (
     compare_section_speeds,
     fin_runs,
+    flow_settled_speed,
     flow_speed,
     reduces_speed_error,
     residual_text,
@@ -35,6 +37,56 @@ def test_the_speed_is_that_of_the_last_cycle():
         coords={"flow_run": ["whole"], "flow_time": time, "xyz": list("xyz")},
     )
     assert flow_speed(record, "whole") == pytest.approx(0.4)
+
+
+def flow_record(*centres, period=1.0):
+    """A record of swims in a flow with given places along x, of which each has 20 samples a cycle."""
+    x = np.array(centres)
+    centre = np.stack([x, 0 * x, 0 * x], axis=-1)
+    return xr.Dataset(
+        {"flow_centre_of_mass": (("flow_run", "flow_time", "xyz"), centre), "flow_period": ((), period)},
+        coords={"flow_run": np.arange(len(x)), "flow_time": np.arange(x.shape[1]) * period / 20, "xyz": list("xyz")},
+    )
+
+
+def agree(speeds):
+    """Whether each speed is too short to be settled, or the settled ones lie in each other's intervals."""
+    settled = [speed for speed in speeds if speed.is_settled]
+    return all(one.low <= other.high for one in settled for other in settled)
+
+
+@pytest.mark.parametrize("cycles", [4, 30])
+def test_the_speed_does_not_depend_on_the_ramp_where_it_is_settled(cycles):
+    """Two approaches to one speed that begin otherwise: early cycles differ, and are said to be no settled ones."""
+    time, wobble = np.arange(20 * cycles + 1) / 20, np.random.default_rng(5).normal(size=20 * cycles + 1)
+    speeds = [0.1 * (1 - slow * np.exp(-time / 2.0)) + 0.002 * wobble for slow in (1.0, -0.8)]
+    centres = [np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) / 20)]) for v in speeds]
+    record = flow_record(*centres)
+    found = [flow_settled_speed(record, name) for name in (0, 1)]
+    assert [speed.is_settled for speed in found] == [cycles == 30] * 2
+    assert agree(found)
+    if cycles == 30:
+        assert [speed.mean for speed in found] == pytest.approx([0.1, 0.1], rel=0.02)
+    else:
+        assert [speed.mean for speed in found] == [flow_speed(record, name) for name in (0, 1)]
+        assert abs(found[0].mean - found[1].mean) > 0.01
+
+
+def test_swims_that_begin_with_two_ramps_are_too_short_to_be_settled_or_agree():
+    """On these cells the third cycles of two ramps differ by far more than a swim's cycles would, once settled."""
+    robot, places = ROBOTS["swimmer"], []
+    for ramp in (0.25, 1.0):
+        run = Run(robot=robot, gait=swim_of(robot, frequency=1.0), water=Slice(cells=40, reynolds=600.0),
+                  control=Swimming(ramp=ramp))  # fmt: skip
+        swim = Swim(run, 2.0)
+        swim.go(2.0, progress=silent)
+        record = swim.record().isel(run=0)
+        times = np.arange(41) / 20
+        places.append(np.interp(times, record.time.values, record.centre_of_mass.sel(xyz="x").values))
+    found = [flow_settled_speed(flow_record(*places), name) for name in (0, 1)]
+    assert agree(found)
+    assert not any(speed.is_settled for speed in found)  # two cycles are never enough
+    assert found[0].mean != pytest.approx(found[1].mean, rel=0.01)
 
 
 def test_the_rung_has_the_settings_that_were_asked_for():
@@ -87,6 +139,9 @@ def test_a_robot_swims_in_space_beside_its_swims_at_the_surface():
     assert "residual.md" in outcome.tables
     assert "swim_in_flow.gif" in outcome.films
     assert "solved together" in outcome.decides
+    assert m["unsettled_space"] == 1.0
+    assert np.isnan(m["half_width_space"])
+    assert "The swim is too short to be settled" in outcome.decides
 
 
 @pytest.mark.slow("more than ten seconds: two cycles of a robot on its links in a flow")

@@ -200,7 +200,7 @@ def slices(cycles):
 
 def test_a_rung_that_cannot_run_says_so_and_the_others_speak(no_flow):
     record = run_ladder(
-        replace(SWIMMING.quick(), cycles=4).ladder_setting(), lambda stage, share: None, slices=slices(4)
+        replace(SWIMMING.quick(), cycles=4).ladder_setting(), lambda stage, share: None, slices=lambda _: slices(4)
     )
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"slice_taken", "space"}
@@ -234,7 +234,7 @@ def test_a_body_that_does_not_float_leaves_theories_and_the_slice(no_flow, monke
 
     monkeypatch.setattr(ladder, "swum_in_sections", sinks)
     climb = replace(SWIMMING.quick(), robot=ROBOTS["swimmer"]).ladder_setting()
-    record = run_ladder(climb, lambda stage, share: None, slices=slices(2))
+    record = run_ladder(climb, lambda stage, share: None, slices=lambda _: slices(2))
     unable = json.loads(record.attrs["unable"])
     assert set(unable) == {"sections", "slice_taken", "space"}
     assert unable["slice_taken"] == unable["sections"]
@@ -284,6 +284,19 @@ def test_nothing_swims_for_a_claim_on_which_the_rungs_before_disagree(swum):
     assert found["gain_spine_share_slice"] == whole["gain_spine_share_slice"]
     for rule in RULES:
         assert judge(rule, found).verdict == judge(rule, whole).verdict
+
+
+def test_a_slice_that_is_swum_elsewhere_is_asked_for_what_the_claims_need(swum):
+    asked = []
+
+    def swim_slices(names):
+        asked.append({*names})
+        return slices(8)
+
+    swum_of(slices=swim_slices)
+    swum_of(slices=swim_slices, claims=[rule.claim for rule in RULES])
+    assert asked == [{*ladder.SWIMS}, {"trunk and tail", "tail only", "held"}]
+    assert (2, "held") not in swum
 
 
 def test_only_what_the_claims_are_read_of_swims(swum):

@@ -219,22 +219,9 @@ class SlipWater(Fluid):
             _leave_divergence(self._in_space(self._raw, 1), self._in_space(stage.rate, 1), self._first, step)
             self._mirror_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
-            for c in range(self.ndim):
-                immerse(
-                    out[c],
-                    blend[c],
-                    raw[c],
-                    b[c],
-                    mu0[c],
-                    passage[c],
-                    mu1[c],
-                    p,
-                    c,
-                    self._near_layout,
-                    self.inner,
-                    step,
-                    stage.blend_fraction,
-                )
+            immerse(
+                out, blend, raw, b, mu0, passage, mu1, p, self._near_layout, self.inner, step, stage.blend_fraction
+            )  # fmt: skip
         self.border.fill(stage.result)
 
     def _collect(self, stage, weight):
@@ -248,13 +235,11 @@ class SlipWater(Fluid):
             np.zeros_like(self._flat(self.mu0)),
         )
         out, blend, bare, mu1 = (self._flat(a) for a in (stage.result, stage.blend, self._bare, self.mu1))
-        owners = [self._flat(owner) for owner in self.owners]
-        for c, mean in enumerate(self.mean):
-            add_immersion_impulse(
-                sums, out[c], blend[c], bare[c], self._flat(mean), everywhere[c], mu1[c], p, owners[c], c, near, inner,
-                dt, keep,
-            )  # fmt: skip
-        dilatation_work(sums, p, self._flat(self.source), np.stack(owners), near, inner, dt)
+        owners = self._flat(self.owners)
+        add_immersion_impulse(
+            sums, out, blend, bare, self._flat(self.mean), everywhere, mu1, p, owners, near, inner, dt, keep
+        )  # fmt: skip
+        dilatation_work(sums, p, self._flat(self.source), owners, near, inner, dt)
         self.immersion_sums += weight * sums
 
 

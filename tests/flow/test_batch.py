@@ -46,6 +46,32 @@ def test_each_flow_of_a_batch_has_the_bytes_that_it_has_alone(thread_count):
             np.testing.assert_array_equal(mine, other)
 
 
+def in_turn(sims, steps):
+    """Advance flows in lockstep, each by one step after the other."""
+    for _ in range(steps):
+        for sim in sims:
+            sim.advance()
+
+
+def test_flows_that_take_turns_have_the_bytes_that_they_have_alone():
+    sims = [flow.Simulation(setup, thread_count=1) for setup in setups()]
+    in_turn(sims, 6)
+    for setup, sim in zip(setups(), sims, strict=True):
+        alone = flow.Simulation(setup, thread_count=1)
+        in_turn([alone], 6)
+        for mine, other in zip(state(sim), state(alone), strict=True):
+            np.testing.assert_array_equal(mine, other)
+
+
+def test_flows_that_share_their_sides_would_be_noticed():
+    sims = [flow.Simulation(setup, thread_count=1) for setup in (STILL, replace(STILL, viscosity=0.05))]
+    sims[1].water.border.induced = sims[0].water.border.induced
+    in_turn(sims, 3)
+    alone = flow.Simulation(STILL, thread_count=1)
+    in_turn([alone], 3)
+    assert np.abs(sims[0].water.velocity - alone.water.velocity).max() > 1e-4
+
+
 def test_a_batch_can_be_continued_and_watched_flow_by_flow():
     seen = []
     batch = flow.batch(

@@ -17,15 +17,17 @@ import hashlib, numba, numpy as np
 from suchus.flow import farfield, project
 random = np.random.default_rng(3)
 u, v, source = (random.standard_normal((68, 100)).astype(np.float32) for _ in range(3))
-points, place, strength = random.random((2, 70)), random.random((2, 90)), random.random((4, 90))
+block, x, y = np.zeros((4, 8, 12)), 8 * np.arange(12) + 3.5, 8 * np.arange(8) + 3.5
+points, weights, signs = random.random((2, 70)), random.random((4, 50)), np.ones(50)
+face_points, none, window = random.integers(0, 140, (4, 50)), np.zeros((0, 12)), np.array([20, 40, 30, 60])
 where, inner = np.array([0, 64, 96, 20, 40, 30, 60]), (np.uint64(1),)
 for threads in (1, 2):
     numba.set_num_threads(threads)
-    r, sums, out = np.zeros_like(u), np.zeros((68, 4)), np.zeros((2, 70))
-    project.residual(
-        r, np.stack([u, v]), source, np.ones_like(u), where, where, np.float32(0.1), inner, (False, False), sums
+    r, sums, out = np.zeros_like(u), np.zeros((68, 4)), np.zeros(50)
+    project.residual(r, np.stack([u, v]), source, np.ones_like(u), where, where, inner, (False, False), sums)
+    farfield.induce(
+        u, v, window, block, x, y, np.zeros((0, 2), int), none, none, points, face_points, weights, signs, out
     )
-    farfield.induce(points, place, strength, out)
     print(hashlib.sha256(r.tobytes() + sums.tobytes() + out.tobytes()).hexdigest())
 print(project.residual.stats.cache_misses and "compiled" or "loaded")
 print(farfield.induce.stats.cache_misses and "compiled" or "loaded")

@@ -19,11 +19,12 @@ from suchus.hardware.identification import (
     identification_table,
     identify_servos,
     identify_walking,
+    waving_gait,
 )
 from suchus.hardware.protocols import servo_table
 from suchus.robot.design import layout, servo_ranges, with_named_servos
 from suchus.robot.gaits import GAITS
-from suchus.robot.motion import intended
+from suchus.robot.motion import cycle_targets, intended
 from suchus.robot.motors.identified import identified_servo
 from suchus.robot.robots import ROBOTS
 from suchus.sim.faults import Backlash
@@ -147,6 +148,30 @@ def test_most_servos_that_wave_are_identified_and_the_others_are_said():
     assert set(identified) | set(refusals) == set(NAMES)
     assert "no hinge of its own" in refusals["tail_cable"]
     assert all("the motion is too calm" in text for name, text in refusals.items() if name != "tail_cable")
+
+
+def test_the_wave_of_the_guide_identifies_servos():
+    robot = hidden(0)
+    body = EmulatedBody(robot, GAITS["belly_crawl"], held=True, latency=DELAY, timestep=0.0025)
+    times = body.period * np.arange(round(20.0 / body.period))
+    log = driven_log(body, intended(ROBOT, waving_gait(ROBOT), times).targets)
+    identified, _ = identify_servos(log, ROBOT)
+    assert len(identified) >= 16
+    errors = [abs(servo.armature.value / robot.servo(name).armature - 1.0) for name, servo in identified.items()]
+    assert max(errors) < 0.1
+
+
+@pytest.mark.parametrize("name", ["caiman", "strider", "swimmer", "salamandra"])
+def test_a_wave_stays_within_ranges_and_speeds_of_any_body(name):
+    robot = ROBOTS[name]
+    weak = with_named_servos(robot, {servo: replace(robot.servo(servo), speed=1.0) for servo in layout(robot).servos})
+    for body, max_speed in ((robot, np.inf), (weak, 0.5)):
+        clock = np.linspace(0.0, 1.0, 2001)
+        angles = cycle_targets(body, waving_gait(body, period=10.0), clock)
+        low, high = servo_ranges(body).T
+        assert np.all((low - 1e-6 <= angles) & (angles <= high + 1e-6))
+        assert np.all(np.ptp(angles, axis=0) > 0.1)
+        assert np.abs(np.diff(angles, axis=0)).max() / (10.0 / 2000) <= max_speed + 1e-3
 
 
 def test_a_current_that_is_told_too_great_gives_a_torque_constant_too_small():

@@ -124,7 +124,7 @@ def test_a_rung_without_an_answer_to_the_most_likely_numbers_says_so(tmp_path):
     assert seal.refused == {"none": "it gave no answer with the most likely numbers."}
 
 
-def test_the_page_says_misses_first_and_keeps_what_it_is_made_of(tmp_path):
+def test_the_page_lists_misses_before_contestants_and_keeps_what_it_is_made_of(tmp_path):
     one = stone()
     sealed_prediction(one, tmp_path)
     low = _truth(tmp_path, {"speed": {**_TRUTH["speed"], "value": 40.0, "low": 39.0, "high": 41.0}})
@@ -138,9 +138,10 @@ def test_the_page_says_misses_first_and_keeps_what_it_is_made_of(tmp_path):
     assert standing_text([kept]) == standing_text([made])
     assert page([kept], FIGURE) == text
     near = standing(one, tmp_path, _truth(tmp_path))
-    assert "Of 2 predictions that could be judged here 1 missed, 0 were within a wide interval and 1 within" in page(
-        [near], "x"
-    )
+    text = page([near], "x")
+    assert "Of 2 predictions that could be judged here 1 missed." in text
+    assert "| formula | 1 | 1 | 1 | 0 | 0 |" in text
+    assert "| film | 1 | 0 | 0 | 0 | 1 |" in text
 
 
 def test_a_page_of_whom_nothing_was_measured_warns_of_nothing(tmp_path):

@@ -79,7 +79,9 @@ def test_the_flow_in_space_is_no_mean_with_theories(monkeypatch):
     one = find(CONTESTANTS, "catshark_2")
     task = next(iter(one.rungs["space"].work.args), None)
     assert isinstance(task, SwimTask)
-    plain = replace(task, target_speed=None, read_quantities=lambda numbers, swimmer, swum: {"speed": swum.speed})
+    plain = replace(
+        task, target_speed=None, filmed_swing=None, read_quantities=lambda numbers, swimmer, swum: {"speed": swum.speed}
+    )
     answers = swims_of_models._by_space(plain, [one.likely], partial(lambda *_: None))
     assert len(answers) == 1 + 2 * len(SPACE_CELLS)
     assert {round(answer["speed"], 9) for answer in answers} == {0.4}

@@ -259,9 +259,9 @@ def test_the_front_is_said_by_names_by_an_option_or_guessed(tmp_path):
     assert read(quadruped(), tmp_path).robot.girdles[0].limb.hinges
     blind = {f"leg{i}": place for i, place in enumerate(QUADRUPED.values())}
     guessed = read(quadruped(legs=blind), tmp_path)
-    assert "Guess: the front is the file's x axis turned left by 0 degrees" in told(guessed)
+    assert "Guess: the front is along the file's x axis" in told(guessed)
     asked = read(quadruped(legs=blind), tmp_path, front="leg2_hip")
-    assert "turned left by 180 degrees, as names or options say" in told(asked)
+    assert "Front: against the file's x axis, as names or options say" in told(asked)
     assert asked.matches[0].file_hinge != guessed.matches[0].file_hinge
     assert read(quadruped(legs=blind), tmp_path, heading=180.0).matches == asked.matches
     with pytest.raises(UnknownName, match="Did you mean 'leg2_hip'"):

@@ -71,7 +71,7 @@ def test_a_sprawling_walker_of_any_trunk_goes_where_its_names_say(names, long_si
         ["yaw", "pitch", "pitch"]
     ] * 2
     assert draft.robot.length == pytest.approx(long_side)
-    assert "turned left by 0 degrees, as names" in told(draft)
+    assert "Front: along the file's x axis, as names" in told(draft)
     if long_side < 0.12:
         assert "by shape alone the front would be at 90 or 270 degrees; the names were followed" in told(draft)
     else:
@@ -82,7 +82,7 @@ def test_a_walker_without_speaking_names_goes_along_its_longer_side_and_the_othe
     draft = read(renamed(("p", "q", "s", "t")), tmp_path)
     assert draft.robot.length == pytest.approx(0.34)
     assert front_limb(draft) == "p_yaw"
-    assert "Guess: the front is the file's x axis turned left by 0 degrees" in told(draft)
+    assert "Guess: the front is along the file's x axis" in told(draft)
     square = renamed(("p", "q", "s", "t")).replace('"0.14 ', '"0.09 ').replace('"-0.14 ', '"-0.09 ')
     text = square.replace('size="0.34 0.12 0.05"', 'size="0.2 0.12 0.05"')
     assert "mirror as well about another plane; if that is the right one, --heading 90 or 270" in told(
@@ -92,7 +92,7 @@ def test_a_walker_without_speaking_names_goes_along_its_longer_side_and_the_othe
 
 def test_names_turn_a_robot_round_where_its_front_is_behind(tmp_path):
     draft = read(renamed(("RR", "RL", "FR", "FL")), tmp_path)
-    assert "turned left by 180 degrees, as names" in told(draft)
+    assert "Front: against the file's x axis, as names" in told(draft)
     assert front_limb(draft) == "FL_yaw"
 
 

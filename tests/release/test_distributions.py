@@ -74,7 +74,7 @@ def test_the_package_holds_its_templates_and_the_table_of_claims():
     assert {
         "src/suchus/article/verdict/claims.json",
         "src/suchus/py.typed",
-        "src/suchus/visual/replay/templates/player.js",
+        "src/suchus/visual/pages/templates/player.js",
     } <= tracked
 
 

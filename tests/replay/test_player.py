@@ -142,6 +142,20 @@ def test_the_second_run_can_be_hidden_and_the_view_changed(page):
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
 
 
+def test_a_phone_shows_the_scene_and_folds_the_controls(browser, address):
+    for width, is_open in ((390, False), (1280, True)):
+        shown = browser.new_page(viewport={"width": width, "height": 844})
+        shown.goto(address + "#t=0")
+        until(shown, "window.suchus && window.suchus.mass() !== null")
+        assert shown.locator("#controls").get_attribute("open") == ("" if is_open else None)
+        assert shown.get_by_role("combobox", name="View").count() == is_open
+        scene = shown.locator("#scene").bounding_box()
+        assert scene["height"] > 844 / 2
+        shown.locator(".head").first.wait_for(state="attached")
+        assert shown.locator(".head").first.is_visible()
+        shown.close()
+
+
 def test_it_fits_a_phone(browser, address):
     assert fits_a_phone(browser, address)
 

@@ -115,6 +115,22 @@ def test_feet_hang_on_ankles_and_nothing_else_does(robot):
     assert (surface.weights[on_foot, 0] > 0.999).all()
 
 
+def test_the_head_is_the_foremost_point_of_the_front(robot, crawled):
+    head, surface = opened(replay(crawled, robot))[0]["head"], skin(robot)
+    assert surface.bones[head["bone"]] == robot.axis[0].name
+    assert head["at"][0] == pytest.approx(surface.vertices[:, 0].max(), abs=1e-5)
+
+
+def test_feet_are_spoken_of_only_where_they_stand(robot, crawled):
+    assert page_shows_feet(replay(crawled, robot))
+    afloat = crawled.assign(foot_force=0.0 * crawled.foot_force)
+    assert not page_shows_feet(replay(afloat, robot))
+
+
+def page_shows_feet(page):
+    return [f'<label><input id="{name}"' in page for name in ("forces", "tracks")] == [True, True]
+
+
 def test_skin_comes_through(robot, crawled):
     meta, raw = opened(replay(crawled, robot))
     told, surface = meta["skin"], skin(robot)

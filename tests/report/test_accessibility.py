@@ -79,8 +79,8 @@ def page(request, tmp_path_factory):
 
 
 def colours(scheme):
-    style = files("suchus.apps.report").joinpath("templates/style.css").read_text()
-    light, dark = re.findall(r":root \{(.*?)\}", style, re.S)[:2]
+    style = files("suchus.visual.pages").joinpath("templates/style.css").read_text()
+    dark, light = re.search(r"set dark %\}(.*?)\{%", style, re.S)[1], re.search(r":root \{(.*?)\}", style, re.S)[1]
     return dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", light if scheme == "light" else dark))
 
 

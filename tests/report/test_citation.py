@@ -5,9 +5,9 @@ import subprocess
 
 from suchus.apps.report import load_result, render_outcome_page, save_outcome
 from suchus.apps.report.outcome_page import citation
-from suchus.apps.report.rendering import tied
 from suchus.core.files import commit_of, provenance
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.visual.pages import tied
 
 OUTCOME = {
     "experiment": "swim_free",

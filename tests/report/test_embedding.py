@@ -7,8 +7,8 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from suchus.apps.report.rendering import as_drawing, as_pixels, embedded
 from suchus.visual.figures import captioned, panels, save, styled
+from suchus.visual.pages import as_drawing, as_pixels, embedded
 
 
 @pytest.fixture

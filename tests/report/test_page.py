@@ -352,4 +352,4 @@ def test_the_page_counts_as_the_readme_does_and_names_what_is_no_evidence(result
     first = text[text.index("Read this first") : text.index("</aside>")]
     assert "Fitted" in first  # of another word, and fitted nonetheless
     assert "same sense" in first
-    assert "Said twice</h4>" not in first
+    assert "Said twice:" not in first

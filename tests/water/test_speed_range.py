@@ -32,6 +32,8 @@ def test_sections_are_the_answer_and_the_range_is_over_all_that_apply():
     assert "0.024" not in answer.sentence
     assert "0.024 m/s by the flow in space at 7000" in answer.other_waters_sentence
     assert answer.sentence.count(". ") == 0
+    assert answer.sentence == f"{answer.answer[:-1]} ({answer.omissions})."
+    assert "leave" not in answer.answer
 
 
 def test_where_models_agree_there_is_one_number():

@@ -9,6 +9,7 @@ from importlib import resources
 import numpy as np
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
+from evidence.league.cases._films import filmed_swing
 from evidence.league.cases._water import fresh
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
@@ -27,6 +28,7 @@ _FAO = (
     "proportions of Scyliorhinus canicula, from memory of the drawing in Compagno 1984, FAO Species Catalogue 4: not "
     "measured here, so that the range is wide"
 )
+_SECTION_DRAWS = 12  # of the numbers in sections, each of which holds a speed and a swing
 _BEAT = 6.0  # [Hz]; for which the joints are stiff enough to follow the film
 
 
@@ -146,8 +148,15 @@ def at(speed: float) -> Contestant:
         rungs={"law": _LAW}
         | rungs(
             SwimTask(
-                build=build, read_quantities=read, cycles=12, resolved_cycles=6, target_speed=held, start=_start(speed)
-            )
+                build=build,
+                read_quantities=read,
+                cycles=12,
+                resolved_cycles=6,
+                target_speed=held,
+                start=_start(speed),
+                filmed_swing=filmed_swing,
+            ),
+            section_draws=_SECTION_DRAWS,
         ),
         find_unsteadiness=partial(_unsteadiness, speed),
     )

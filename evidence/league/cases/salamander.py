@@ -8,9 +8,18 @@ import numpy as np
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
 from evidence.league.cases._water import fresh
-from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, sections, theory, waters
+from evidence.league.swims import (
+    ModelSwimmer,
+    SwimPrediction,
+    SwimTask,
+    held_swim,
+    rungs,
+    steady_swims,
+    theory,
+    waters,
+)
 from suchus.core.errors import NotConverged
-from suchus.core.progress import Progress
+from suchus.core.progress import Progress, portion
 from suchus.robot.gaits import ANIMAL_SWIM
 from suchus.robot.motion import Curve, Gait, servo_parts
 from suchus.robot.robots._animals import pleurodeles
@@ -23,6 +32,8 @@ _FILMED = (
     "Pleurodeles waltl; Karakasiliotis, Schilling, Cabelguen and Ijspeert 2013, Biol. Cybern. 107, 529, public data of "
     "SalamandraSNN (MIT)"
 )
+SWING = 0.26
+"""Way of the tail's tip from side to side that was filmed [body length]."""
 _FOLDED = float(np.radians(-85.0))
 
 
@@ -50,24 +61,48 @@ def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found
     return {"stride": swum.speed / swum.frequency / swimmer.robot.length}
 
 
+def filmed_swing(numbers: Numbers) -> float:
+    """Return the filmed way of the tail's tip from side to side [m]."""
+    return numbers["swing"] * numbers["length"]
+
+
+def _build_at(often: float, numbers: Numbers, frequency: float | None) -> ModelSwimmer:
+    """Return the animal at a filmed frequency [Hz]."""
+    del frequency
+    return build(numbers, often)
+
+
+def _task(often: float) -> SwimTask:
+    """Return the task to swim at a filmed frequency [Hz] with the filmed swing of the tail."""
+    return SwimTask(build=partial(_build_at, often), read_quantities=read, cycles=12, filmed_swing=filmed_swing)
+
+
 def by_theory(model: Model, choices: Sequence[Numbers], progress: Progress) -> list[Found]:
     """Return strides over the frequency, and their mean, by a theory."""
     found: list[Found] = []
     for i, numbers in enumerate(choices):
         progress("choices of the numbers", i / len(choices))
         try:
-            found.append(_strides(numbers, [theory(model, build(numbers, one)) for one in FREQUENCIES]))
+            swums = [held_swim(_task(often), numbers, partial(theory, model))[1] for often in FREQUENCIES]
+            found.append(_strides(numbers, swums))
         except NotConverged:
             found.append({})
     return found
 
 
 def by_sections(choices: Sequence[Numbers], progress: Progress) -> list[Found]:
-    """Return the same in six degrees of freedom."""
-    swimmers = [build(numbers, one) for numbers in choices for one in FREQUENCIES]
-    swums = sections(swimmers, cycles=12, progress=progress)
+    """Return the same in six degrees of freedom.
+
+    Raises:
+        OutsideLimits: the swims with the most likely numbers are not steady, or not as filmed.
+    """
     count = len(FREQUENCIES)
-    return [_strides(numbers, swums[count * i : count * (i + 1)]) for i, numbers in enumerate(choices)]
+    swims = [steady_swims(_task(often), choices, portion(progress, i, count)) for i, often in enumerate(FREQUENCIES)]
+    found: list[Found] = []
+    for numbers, *row in zip(choices, *swims, strict=True):
+        steady = [swum for swum in row if swum is not None]
+        found.append(_strides(numbers, steady) if len(steady) == count else {})
+    return found
 
 
 def _strides(numbers: Numbers, swums: Sequence[SwimPrediction]) -> Found:
@@ -77,6 +112,11 @@ def _strides(numbers: Numbers, swums: Sequence[SwimPrediction]) -> Found:
 
 
 _GIVEN = {
+    "swing": Given(
+        value=SWING, low=0.24, high=0.28, unit="body length",
+        source=f"way of the tail's tip from side to side, twice its lateral displacement of 13 % of the length: "
+        f"{_FILMED}",
+    ),
     "length": Given(value=0.176, low=0.170, high=0.182, unit="m", source=f"{_FILMED}: body length"),
     "mass": Given(
         value=0.0163, low=0.013, high=0.021, unit="kg",
@@ -92,14 +132,15 @@ _GIVEN = {
         value=0.25, low=0.1, high=0.4, unit="-", source="lungs lie above the bones: by how much is not published"
     ),
 }  # fmt: skip
-_ASKED = {name: rung for name, rung in rungs(SwimTask(build=build, read_quantities=read)).items() if name != "reactive"}
+_TASK = SwimTask(build=build, read_quantities=read, filmed_swing=filmed_swing)
+_ASKED = {name: rung for name, rung in rungs(_TASK).items() if name != "reactive"}
 contestant = SingleContestant(
     Contestant(
         name="salamander",
         title="A salamander swims at 2.6 to 3.8 Hz",
         description="Pleurodeles waltl at its own length, mass and volume, limbs folded back, in fresh water; the "
         "angles of its "
-        "axial joints are the mean cycle that was filmed.",
+        "axial joints are the mean cycle that was filmed, scaled so that its tail swings as far as the animal's did.",
         inputs=_GIVEN
         | fresh(
             drag=(1.1, 0.8, 1.8),

@@ -4,6 +4,7 @@ from functools import lru_cache
 from itertools import pairwise
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
+from evidence.league.cases._films import filmed_swing
 from evidence.league.cases._water import fresh
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.robot.design import Robot
@@ -13,7 +14,11 @@ from suchus.swimming.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"
 _JOINTS = (0.62, 0.76, 0.88)
-_TUNA = "drawn after yellowfin tuna, from memory, not measured: the article's drawing could not be read here"
+_TUNA = (
+    "49 mm wide and 68 mm high (Zhu et al. 2019, text [memory]), the outline between drawn after yellowfin tuna, from "
+    "memory: the article's drawing could not be read here"
+)
+_WIDE, _HIGH = 0.0961, 0.1333  # half of 49 and of 68 mm [body length]
 
 
 @lru_cache(maxsize=128)
@@ -21,15 +26,16 @@ def _body(length: float, wide: float, fin: float, density: float) -> Robot:
     places = (0.0, 0.06, 0.15, 0.30, 0.45, 0.60, 0.75, 0.86, 0.93, 1.0)
     width = (0.015, 0.045, 0.075, 0.095, 0.090, 0.070, 0.038, 0.016, 0.010, 0.008)
     height = (0.018, 0.055, 0.095, 0.125, 0.120, 0.095, 0.055, 0.025, fin, fin)
-    half_width = tuple(0.9 * wide * value for value in width)
+    half_width = tuple(_WIDE / max(width) * wide * value for value in width)
+    half_height = tuple(value if value == fin else _HIGH / 0.125 * value for value in height)
     area = sum(
-        0.5 * (b - a) * (width[i] * height[i] + width[i + 1] * height[i + 1])
+        0.5 * (b - a) * (half_width[i] * half_height[i] + half_width[i + 1] * half_height[i + 1])
         for i, (a, b) in enumerate(pairwise(places))
     )
-    mass = density * 3.1416 * 0.9 * wide * area * length**3
+    mass = density * 3.1416 * area * length**3
     drawing = Drawing(
         name="tunabot", length=length, mass=mass, density=density, stations=places, half_width=half_width,
-        half_height=height, joints=_JOINTS, keel=0.4,
+        half_height=half_height, joints=_JOINTS, keel=0.4,
     )  # fmt: skip
     return drawing.robot(swim_servo_for(mass, length, 15.0))
 
@@ -92,6 +98,8 @@ contestant = SingleContestant(
             "speed": Quantity(unit="body length/s", words="speed at 15 Hz"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),
         },
-        rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=16, resolved_cycles=6)),
+        rungs=rungs(
+            SwimTask(build=build, read_quantities=read, cycles=16, resolved_cycles=6, filmed_swing=filmed_swing)
+        ),
     )
 )  # fmt: skip

@@ -7,15 +7,13 @@ from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
-from markupsafe import Markup
 from PIL import Image
 
 from suchus.animals.capture import UnusableTracks
 from suchus.animals.capture.tracks import GAIT_KEYPOINTS
 from suchus.animals.pictures import MOVING, VIDEOS, FilmFrame, frames, is_film
-from suchus.core.files import versions
 from suchus.robot.design import LEGS
-from suchus.visual.replay.page import embed_json, environment
+from suchus.visual.pages import embed_json, render
 
 POINTS = ("snout", "neck", "shoulder", "hip", "tail_base", "tail_tip", *LEGS)
 """Points that a page offers at first; more are added on it."""
@@ -92,14 +90,8 @@ def digitising_page(
         "points": POINTS,
         "needed": GAIT_KEYPOINTS,
     }
-    return environment().get_template("digitise.html").render(
-        film=film.name,
-        facts=embed_json(facts),
-        pictures=embed_json([picture for _, picture in shots]),
-        program=_source("digitise.js"),
-        look=_source("digitise.css"),
-        version=versions()["suchus"],
-    )  # fmt: skip
+    title, pictures = f"{film.name}: click the points", embed_json([picture for _, picture in shots])
+    return render("digitise.html", title=title, film=film.name, facts=embed_json(facts), pictures=pictures)
 
 
 def _chosen(film: Path, rate: float | None, start: float | None, end: float | None, every: int) -> Iterator[_Shot]:
@@ -137,10 +129,3 @@ def _shape(size: tuple[int, int]) -> str:
     """Return width and height [px] as a text."""
     width, height = size
     return f"{width} x {height}"
-
-
-def _source(name: str) -> Markup:
-    """Return a program or a style of the page."""
-    templates = environment()
-    assert templates.loader is not None
-    return Markup(templates.loader.get_source(templates, name)[0])

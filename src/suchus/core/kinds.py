@@ -46,7 +46,8 @@ def _huge(value: Any) -> bool:
     return isinstance(value, Integral) and not -(2**1023) < int(value) < 2**1023
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
+    """Return whether a value is a real number that double precision holds; truth values and texts are none."""
     if type(value) is float:  # most are
         return True
     return not isinstance(value, bool) and isinstance(value, Real) and not _huge(value)
@@ -60,7 +61,7 @@ def _check(hint: Any) -> Fits:
     """Return what tells whether a value is what a hint declares."""
     origin, inner = get_origin(hint), get_args(hint)
     if hint in (float, int):
-        return _is_number if hint is float else _is_integer
+        return is_number if hint is float else _is_integer
     if origin in (Union, UnionType):
         members = [_check(member) for member in inner]
         return lambda value: any(fits(value) for fits in members)

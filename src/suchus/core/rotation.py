@@ -11,14 +11,26 @@ scipy's.
 Zeros and NaN, as of sensors that are lost, go through all but ``matrix``.
 """
 
+from functools import cache
 from math import atan2, pi, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
-from scipy.spatial.transform import Rotation
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 Quaternion = Float[np.ndarray, "*b 4"]
 Vector = Float[np.ndarray, "*c 3"]
+
+
+@cache
+def _rotation_type() -> "type[Rotation]":
+    """Return scipy's class of rotations; its import takes a quarter of that of ``flow``, and the plane needs none."""
+    from scipy.spatial.transform import Rotation  # noqa: PLC0415  see above
+
+    return Rotation
 
 
 def roll(q: Quaternion) -> Float[np.ndarray, "*b"]:
@@ -76,7 +88,7 @@ def from_axis_angle(axis: Vector, angle: Float[np.ndarray, "*b"] | float) -> Qua
 
 def from_angles(yaw: float, pitch: float, roll: float) -> Float[np.ndarray, "4"]:
     """Return the quaternion of three angles that follow each other as intrinsic rotations [rad]."""
-    return np.asarray(Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_quat(scalar_first=True))
+    return np.asarray(_rotation_type().from_euler("ZYX", [yaw, pitch, roll]).as_quat(scalar_first=True))
 
 
 def angles(q: Float[np.ndarray, "4"]) -> tuple[float, float, float]:
@@ -97,7 +109,7 @@ def attitude(rotation_matrix: Float[np.ndarray, "3 3"]) -> tuple[float, float, f
 
 def from_vector(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:
     """Return the quaternion of a rotation vector: its axis times its angle [rad]."""
-    return np.asarray(Rotation.from_rotvec(vector).as_quat(scalar_first=True))
+    return np.asarray(_rotation_type().from_rotvec(vector).as_quat(scalar_first=True))
 
 
 def to_vector(q: Float[np.ndarray, "4"], reference: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3"]:
@@ -112,22 +124,24 @@ def to_vector(q: Float[np.ndarray, "4"], reference: Float[np.ndarray, "3"]) -> F
 
 def vectors(matrices: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "n 3"]:
     """Return the rotation vectors of rotation matrices, of at most half a turn [rad]."""
-    return np.asarray(Rotation.from_matrix(matrices).as_rotvec())
+    return np.asarray(_rotation_type().from_matrix(matrices).as_rotvec())
 
 
 def turns(vectors: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3 3"]:
     """Return the rotation matrices of rotation vectors [rad]."""
-    return np.asarray(Rotation.from_rotvec(vectors).as_matrix())
+    return np.asarray(_rotation_type().from_rotvec(vectors).as_matrix())
 
 
 def turn(vector: Float[np.ndarray, "3"]) -> Float[np.ndarray, "3 3"]:
     """Return the rotation matrix of a rotation vector [rad]."""
-    return np.asarray(Rotation.from_rotvec(vector).as_matrix())
+    return np.asarray(_rotation_type().from_rotvec(vector).as_matrix())
 
 
 def matrix(q: Quaternion) -> Float[np.ndarray, "*b 3 3"]:
     """Return the rotation matrices, whose columns are the body's axes in the world."""
-    return np.asarray(Rotation.from_quat(q.reshape(-1, 4), scalar_first=True).as_matrix().reshape(*q.shape[:-1], 3, 3))
+    return np.asarray(
+        _rotation_type().from_quat(q.reshape(-1, 4), scalar_first=True).as_matrix().reshape(*q.shape[:-1], 3, 3)
+    )
 
 
 def multiply(q1: Float[np.ndarray, "*c 4"], q2: Float[np.ndarray, "*d 4"]) -> Quaternion:
@@ -139,7 +153,7 @@ def multiply(q1: Float[np.ndarray, "*c 4"], q2: Float[np.ndarray, "*d 4"]) -> Qu
 def rotate(q: Quaternion, vector: Vector) -> Float[np.ndarray, "*d 3"]:
     """Return vectors of the body's frame in the world's; one quaternion may turn many vectors, and the reverse."""
     if q.ndim == 1 and vector.ndim > 1:
-        rotated = Rotation.from_quat(q, scalar_first=True).apply(vector.reshape(-1, 3))
+        rotated = _rotation_type().from_quat(q, scalar_first=True).apply(vector.reshape(-1, 3))
         return np.asarray(rotated.reshape(vector.shape))
     w, v = q[..., :1], q[..., 1:]
     doubled_cross = 2 * np.cross(v, vector)

@@ -222,7 +222,7 @@ class Experiment(ABC):
     needs: ClassVar[tuple[str, ...]] = ()
     """What it needs of a robot: names of ``design.NEEDS``; written out, so that ``suchus list`` can show it."""
     reproduces: ClassVar[bool] = True
-    """Whether ``suchus reproduce`` runs it; False for what takes minutes and judges none of the article's claims."""
+    """Whether ``suchus reproduce`` runs it without ``--all``; False for what judges none of the article's claims."""
     follows_gait: ClassVar[bool] = True
     """Whether the joints must be able to follow the gait; False where whether they can is a part of the question."""
     judged_settings: ClassVar[tuple[str, ...]] = ("robot",)
@@ -393,6 +393,13 @@ class Experiment(ABC):
     @abstractmethod
     def quick(self) -> "Experiment":
         """Return the same question, small enough for a test."""
+
+    def for_verdicts(self) -> Self:
+        """Return the same question without what no verdict needs: the points of maps, runs that are only compared.
+
+        The verdicts have the same words. It is the same question where nothing can be left out.
+        """
+        return self
 
     def for_robot(self, robot: Robot) -> Self:
         """Return the same question for another robot.

@@ -191,6 +191,8 @@ def cuts(window: Window, grid: Grid, mirrors: tuple[bool, ...]) -> tuple[bool, .
         grid: the grid.
         mirrors: whether there is a mirror at these ends; see ``Sides.has_mirror``.
     """
+    if not any(mirrors):
+        return (False,) * len(mirrors)
     return tuple(beyond and mirror for beyond, mirror in zip(reaches_beyond(window, grid), mirrors, strict=True))
 
 
@@ -207,7 +209,7 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
     Raises:
         InvalidDesign: there are more than ``MAX_ROWS`` parts.
     """
-    ends = list(accumulate((getattr(body.shape, "parts", 1) for body in bodies), initial=0))
+    ends = list(accumulate([getattr(body.shape, "parts", 1) for body in bodies], initial=0))
     if ends[-1] > MAX_ROWS:
         raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MAX_ROWS} are allowed. Cut them less.")
     return [range(start, end) for start, end in pairwise(ends)]

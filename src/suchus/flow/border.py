@@ -5,6 +5,7 @@ kind of side is written once.
 """
 
 from dataclasses import dataclass, field
+from math import prod
 
 import numpy as np
 
@@ -225,6 +226,103 @@ def _fill_planes(velocity, axis, strides, face, inner, step, prescribed, straigh
                     )  # fmt: skip
 
 
+@kernel_part
+def _balance(prescribed, places, fractions):  # type: ignore[no-untyped-def]
+    """Change the velocities on the open sides so that as much water leaves as enters.
+
+    Args:
+        prescribed: velocity into the domain on the faces of all sides, end to end, changed [m/s].
+        places: rows of ``Border.places``; of a periodic side nothing counts.
+        fractions: fraction of the difference that each face of a side takes [-].
+    """
+    net, open_area = 0.0, 0.0
+    for e in range(places.shape[0]):
+        if places[e, 2]:
+            for k in range(places[e, 0], places[e, 1]):
+                net += np.float64(prescribed[k])
+            open_area += (places[e, 1] - places[e, 0]) * fractions[e]
+    if open_area > 0.0:
+        for e in range(places.shape[0]):
+            loss = prescribed.dtype.type(fractions[e] * net / open_area)
+            if fractions[e] > 0.0:
+                for k in range(places[e, 0], places[e, 1]):
+                    prescribed[k] -= loss
+
+
+@compiled
+def _predict(prescribed, induced, previous_induced, velocity, places, inflows, fractions, growth, dt):  # type: ignore[no-untyped-def]
+    """Write the velocities on all open sides at the end of a step from the fields at its start; see ``Border.prepare``.
+
+    Args:
+        prescribed: velocity into the domain on the faces of all sides, end to end, to write to [m/s].
+        induced: velocity that the flow induces there, changed to that of the step's end [m/s].
+        previous_induced: the same one step earlier, changed to that of the step's start [m/s].
+        velocity: components at the start of the step, each with its cells end to end [m/s].
+        places: rows of ``Border.places``.
+        inflows: velocity of the stream into the domain [m/s], weight of the convective condition [-], and rise of the
+            stream through the side since the last step [m/s], shape (side, 3).
+        fractions: see ``_balance``.
+        growth: length of the step over that of the last one; 0 in the first step [-].
+        dt: length of the step [cells per (m/s)].
+    """
+    for e in range(places.shape[0]):
+        start, component, face, inner_face, row_stride, stride = (
+            places[e, 0], places[e, 4], places[e, 6], places[e, 7], places[e, 8], places[e, 9]
+        )  # fmt: skip
+        columns, sign, stream, weight, rise = (
+            places[e, 10], velocity.dtype.type(places[e, 5]), inflows[e, 0], inflows[e, 1], inflows[e, 2]
+        )  # fmt: skip
+        courant, count = velocity.dtype.type(0.0), places[e, 1] - start
+        if places[e, 3] and weight > 0.0:
+            total = 0.0
+            for k in range(count):
+                total += np.float64(sign * velocity[component, face + k // columns * row_stride + k % columns * stride])
+            courant = velocity.dtype.type(min(max(-total / count, 0.0) * dt, 1.0))
+        for k in range(count):
+            change = growth * (induced[start + k] - previous_induced[start + k])
+            if places[e, 3]:
+                inflow = stream + induced[start + k] + change
+                if weight > 0.0:
+                    offset = k // columns * row_stride + k % columns * stride
+                    side_velocity, inner_velocity = (
+                        sign * velocity[component, face + offset],
+                        sign * velocity[component, inner_face + offset],
+                    )
+                    outflow = side_velocity - courant * (side_velocity - inner_velocity)
+                    inflow = weight * (outflow + (rise + change)) + (1.0 - weight) * inflow
+                prescribed[start + k] = inflow
+            previous_induced[start + k] = induced[start + k]
+            induced[start + k] += change
+    _balance(prescribed, places, fractions)
+
+
+@compiled
+def _correct(prescribed, induced, target, places, fractions, relaxation):  # type: ignore[no-untyped-def]
+    """Move the induced velocities towards those of the fields; return the largest change [m/s].
+
+    Args:
+        prescribed: velocity into the domain on the faces of all sides, end to end, changed [m/s].
+        induced: velocity that the flow induces there, changed [m/s].
+        target: the same by the present fields [m/s].
+        places: rows of ``Border.places``.
+        fractions: see ``_balance``.
+        relaxation: fraction of the difference that is corrected [-].
+    """
+    max_rise = 0.0
+    for k in range(induced.size):
+        rise = relaxation * (target[k] - induced[k])
+        prescribed[k] += prescribed.dtype.type(rise)
+        induced[k] += rise
+        max_rise = max(max_rise, abs(rise))
+    _balance(prescribed, places, fractions)
+    return max_rise
+
+
+def _are_numbers(values: np.ndarray, shape: tuple[int, ...]) -> bool:
+    """Return whether an array is one finite number, or has a shape and holds finite numbers."""
+    return values.shape in ((), shape) and values.dtype.kind in "iuf" and bool(np.isfinite(values).all())
+
+
 @dataclass(slots=True)
 class Edge:
     """One side of the domain during a run."""
@@ -296,15 +394,16 @@ class Edge:
         side_text = f"the {self.name} side, a {type(self.side).__name__},"
         if slides is not None and not (np.shape(slides) == (self.prescribed.ndim,) and np.isfinite(slides).all()):
             raise InvalidDesign(
-                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; along() gives one finite "
-                f"number for each other axis, or None."
+                f"at t = {time:.4g} s {side_text} moves along itself at {show(slides)} m/s; wall_velocity() gives "
+                f"one finite number for each other axis, or None."
             )
         if self.side.is_permeable and not self.side.is_open:
             inflow = np.asarray(self.side.inflow_velocity(time, *self.face_coordinates))
-            if inflow.shape not in ((), self.prescribed.shape) or not np.isfinite(inflow).all():
+            if not _are_numbers(inflow, self.prescribed.shape):
                 raise InvalidDesign(
-                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; into() "
-                    f"gives one finite number [m/s], or as many as there are places, shape {self.prescribed.shape}."
+                    f"at t = {time:.4g} s velocities into the domain through {side_text} are {show(inflow)}; "
+                    f"inflow_velocity() gives one finite number [m/s], or as many as there are places, shape "
+                    f"{self.prescribed.shape}."
                 )
         return slides, inflow
 
@@ -416,10 +515,18 @@ class Border:
     """``Edge.induced`` of all sides, in the same way [m/s]."""
     previous_induced: np.ndarray = field(init=False)
     """``Edge.previous_induced`` of all sides, in the same way [m/s]."""
-    side_table: tuple[tuple[float, ...], np.ndarray, np.ndarray] | None = field(init=False, default=None)
-    """The stream and what ``_fill_plane`` needs of each side: axis, face, inner cells, step, cells, index of its first
-    face, whether the normal velocity continues linearly, and the condition, shape (side, 8); and the conditions'
-    values, shape (side,) [m/s]. None before they are known."""
+    side_table: tuple[tuple[object, ...], np.ndarray, np.ndarray] | None = field(init=False, default=None)
+    """What the conditions depend on; what ``_fill_plane`` needs of each side: axis, face, inner cells, step, cells,
+    index of its first face, whether the normal velocity continues linearly, and the condition, shape (side, 8); and
+    the conditions' values, shape (side,) [m/s]. None before they are known."""
+    _places: np.ndarray | None = field(init=False, default=None)
+    """Result of ``places``; None before it is known."""
+    _fractions: tuple[list[float], np.ndarray] | None = field(init=False, default=None)
+    """Convective weights of the sides, and the result of ``_balance_fractions`` for them."""
+    _relaxed_window: Window = field(init=False, default=())
+    """Window for which ``_relaxation`` was computed last."""
+    _relaxation_factor: float = field(init=False, default=1.0)
+    """Its result [-]."""
 
     def __post_init__(self) -> None:
         """Lay the faces of all sides end to end."""
@@ -502,34 +609,72 @@ class Border:
         Raises:
             InvalidDesign: a side says something that is no velocity, or water enters that cannot leave.
         """
-        previous_stream, self.stream, self.side_table = self.stream, stream, None
+        previous_stream, self.stream = self.stream, stream
         size = max(length(stream), 1e-30)
         for edge in self.edges:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
         if self.steps == 0:
             self.induced[:] = self.previous_induced[:] = self._induced(velocity, window)
-        growth, start = dt / self.last_step if self.last_step else 0.0, 0
-        extrapolation = growth * (self.induced - self.previous_induced)
-        for edge in self.edges:
-            stop = start + edge.prescribed.size
-            if edge.side.is_open:
-                change = extrapolation[start:stop].reshape(edge.prescribed.shape)
-                inflow = edge.sign * stream[edge.axis] + edge.induced + change
-                if edge.convective_weight:
-                    rise = (
-                        edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
-                        if isinstance(edge.side, Stream)
-                        else 0.0
-                    )
-                    outflow = self._convective_outflow(edge, velocity, dt) + (rise + change)
-                    inflow = edge.convective_weight * outflow + (1 - edge.convective_weight) * inflow
-                edge.prescribed[:] = inflow
-            start = stop
-        self.previous_induced[:] = self.induced
-        self.induced += extrapolation
+        growth = dt / self.last_step if self.last_step else 0.0
+        inflows = np.array(
+            [
+                (
+                    edge.sign * stream[edge.axis],
+                    edge.convective_weight,
+                    edge.sign * (stream[edge.axis] - previous_stream[edge.axis])
+                    if isinstance(edge.side, Stream)
+                    else 0.0,
+                )
+                for edge in self.edges
+            ]
+        )
+        if self.edges:
+            _predict(
+                self.prescribed, self.induced, self.previous_induced, velocity.reshape(len(velocity), -1),
+                self.places(velocity.shape[1:]), inflows, self._balance_fractions(), growth, dt,
+            )  # fmt: skip
         self.steps, self.last_step = self.steps + 1, dt
-        self._balance()
         self._refuse_gain(time)
+
+    def places(self, shape: tuple[int, ...]) -> np.ndarray:
+        """Return where the faces of each side lie, shape (side, 11).
+
+        The columns are: first face among those of all sides, the face after the last, whether the side is no periodic
+        one, whether it is open, axis of the normal, sign of the inward normal, index in memory of the first face and of
+        the face behind it inside, strides along the two axes of the side, and faces along the second axis.
+
+        Args:
+            shape: padded shape of the grid.
+        """
+        if self._places is None:
+            strides, rows, start = [prod(shape[k + 1 :]) for k in range(len(shape))], [], 0
+            for edge in self.edges:
+                normal = len(shape) - 1 - edge.axis
+                tangential = [k for k in range(len(shape)) if k != normal]
+                offset = sum(PAD * strides[k] for k in tangential)
+                stop = start + edge.prescribed.size
+                rows.append(
+                    (
+                        start, stop, not isinstance(edge.side, Periodic), edge.side.is_open, edge.axis, edge.sign,
+                        edge.face * strides[normal] + offset, (edge.face + edge.sign) * strides[normal] + offset,
+                        strides[tangential[0]] if len(tangential) > 1 else 0, strides[tangential[-1]],
+                        edge.prescribed.shape[-1],
+                    )
+                )  # fmt: skip
+                start = stop
+            self._places = np.array(rows, np.int64)
+        return self._places
+
+    def _balance_fractions(self) -> np.ndarray:
+        """Return the fraction of a net inflow that each face of a side takes, shape (side,) [-].
+
+        Sides that carry water out take the difference; without them the unbounded sides take it.
+        """
+        weights = [edge.convective_weight for edge in self.edges]
+        if self._fractions is None or self._fractions[0] != weights:
+            fractions = weights if any(weights) else [float(edge.unbounded) for edge in self.edges]
+            self._fractions = weights, np.array(fractions)
+        return self._fractions[1]
 
     def _refuse_gain(self, time: float) -> None:
         """Refuse a net flow through the sides where no side can balance it."""
@@ -558,13 +703,13 @@ class Border:
         """
         if self.water is None:
             return 0.0
-        rise = self._relaxation(window) * (self._induced(velocity, window) - self.induced)
-        self.prescribed += rise.astype(self.prescribed.dtype)
-        self.induced += rise
+        change: float = _correct(
+            self.prescribed, self.induced, self._induced(velocity, window), self.places(velocity.shape[1:]),
+            self._balance_fractions(), self._relaxation(window),
+        )  # fmt: skip
         if self.steps == 1:
             self.previous_induced[:] = self.induced
-        self._balance()
-        return float(np.abs(rise).max())
+        return change
 
     def _relaxation(self, window: Window) -> float:
         """Return the fraction of a correction of the induced velocities that is made at once [-].
@@ -577,6 +722,8 @@ class Border:
         """
         if window[1] <= window[0]:
             return 1.0
+        if self._relaxed_window == window:
+            return self._relaxation_factor
         ndim, ratio = len(window) // 2, NEAR_SIDE_RATIO
         spans = [(window[2 * d] - PAD, window[2 * d + 1] - PAD) for d in reversed(range(ndim))]
         for edge in self.edges:
@@ -584,7 +731,9 @@ class Border:
                 start, stop = spans[edge.axis]
                 lateral = max(b - a for d, (a, b) in enumerate(spans) if d != edge.axis)
                 ratio = min(ratio, max(start if edge.is_lower_side else edge.cells - stop, 0) / lateral)
-        return MIN_SIDE_RELAXATION + (1 - MIN_SIDE_RELAXATION) * ratio / NEAR_SIDE_RATIO
+        self._relaxed_window = window
+        self._relaxation_factor = MIN_SIDE_RELAXATION + (1 - MIN_SIDE_RELAXATION) * ratio / NEAR_SIDE_RATIO
+        return self._relaxation_factor
 
     def _induced(self, velocity: np.ndarray, window: Window) -> np.ndarray:
         """Return the velocity into the domain that the flow induces on the faces of all sides, end to end [m/s].
@@ -600,39 +749,6 @@ class Border:
             return self.water.inward_faces(velocity, window, fadings)
         return np.concatenate([side.ravel() for side in self.water.inward(velocity, window, fadings)])
 
-    @staticmethod
-    def _convective_outflow(edge: Edge, velocity: np.ndarray, dt: float) -> np.ndarray:
-        """Return the velocity into the domain on a side at the end of the step, convected from the cells inside [m/s].
-
-        Args:
-            edge: the side.
-            velocity: velocity on the faces before the cells, padded, shape (axis, ...) [m/s].
-            dt: length of the step [cells per (m/s)].
-        """
-        n = edge.normal(velocity)
-        side_velocity = edge.sign * n[edge.face][edge.domain_slices]
-        inner = edge.sign * n[edge.face + edge.sign][edge.domain_slices]
-        speed = max(-float(side_velocity.mean(dtype=np.float64)), 0.0)
-        outflow: np.ndarray = side_velocity - min(speed * dt, 1.0) * (side_velocity - inner)
-        return outflow
-
-    def _balance(self) -> None:
-        """Change the velocities on the open sides so that as much water leaves as enters.
-
-        Sides that carry water out take the difference; without them the unbounded sides take it.
-        """
-        net, open_area = 0.0, 0.0
-        free = any(e.convective_weight for e in self.edges)
-        for edge in self.edges:
-            if not isinstance(edge.side, Periodic):
-                net += float(np.add.reduce(edge.prescribed, axis=None, dtype=np.float64))
-                open_area += edge.prescribed.size * (edge.convective_weight if free else float(edge.unbounded))
-        if open_area:
-            for edge in self.edges:
-                fraction = edge.convective_weight if free else float(edge.unbounded)
-                if fraction:
-                    edge.prescribed -= fraction * net / open_area
-
     def fill(self, velocity: np.ndarray) -> None:
         """Write all boundary values around the domain."""
         if len(velocity) == 3:
@@ -641,10 +757,11 @@ class Border:
             return
         if not self.edges:
             return
-        if self.side_table is None or self.side_table[0] is not self.stream:
+        key = self.stream, *[(edge.convective_weight, edge.wall_velocity) for edge in self.edges]
+        if self.side_table is None or self.side_table[0] != key:
             starts = np.cumsum([0, *(edge.prescribed.size for edge in self.edges)]).tolist()
             rows = [edge.table_row(start, self.stream) for edge, start in zip(self.edges, starts, strict=False)]
             table = np.array([row for row, _ in rows], np.int64).reshape(-1, 8)
-            self.side_table = self.stream, table, np.array([value for _, value in rows], velocity.dtype)
+            self.side_table = key, table, np.array([value for _, value in rows], velocity.dtype)
         _, table, values = self.side_table
         _fill_plane(velocity, table, values, self.prescribed)

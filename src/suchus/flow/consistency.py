@@ -1,3 +1,5 @@
+# mypy: disable-error-code="no-untyped-def"
+# (the kernels get their types from numba)
 """Check that the rates that a motion or a bending body declares are the time derivatives of its positions.
 
 The solver takes the velocity of the wall from the rates and its place from the positions. Where they differ, forces and
@@ -13,6 +15,7 @@ import numpy as np
 
 from suchus.core import rotation
 from suchus.core.errors import Doubtful, InvalidDesign
+from suchus.flow.compiled import compiled
 from suchus.flow.linked import LinkStates
 from suchus.flow.midline import MidlineState
 from suchus.flow.pose import Motion, Pose
@@ -33,6 +36,9 @@ half-widths, by some 2 %; the rate of a heading moves an eel's sides by 7 % and 
 DISTANCE_TOLERANCE = 1e-5
 """Distance between the two in one step that is always allowed [cells]."""
 
+RIGID_TOLERANCE = 1e-3
+"""Largest distance that a body with ``deforms=False`` may move by itself in the first step [cells]."""
+
 MAX_CONSECUTIVE_ERRORS = 3
 """Consecutive disagreements that raise an error: a kink of the motion causes one [-]."""
 
@@ -42,6 +48,79 @@ change at once, may add half of the distance that the greatest rate so far cover
 
 _HALVINGS = 40  # of a step, until no point moves farther than a cell
 _COMPARISON_FRACTION = 0.01  # fraction of a step over which positions are compared
+
+
+@compiled
+def compare_rates(excess, doubt, sizes, declared_rate, measured_rate, arms, kinds, max_speed, distance_speed):
+    """Write the differences of declared and measured rates over those that are allowed.
+
+    Args:
+        excess: difference over what ``RATE_TOLERANCE`` allows, shape (coordinate,), to write to [-].
+        doubt: difference over what ``DOUBTFUL_RATE_TOLERANCE`` allows, to write to [-].
+        sizes: fastest speed of each kind of coordinate, to add to [m/s].
+        declared_rate: shape (coordinate,) [m/s, rad/s].
+        measured_rate: shape (coordinate,) [m/s, rad/s].
+        arms: see ``CoordinateSeries``.
+        kinds: see ``CoordinateSeries``.
+        max_speed: fastest speed so far [m/s].
+        distance_speed: difference that is always allowed [m/s].
+
+    Returns:
+        The fastest speed with this one [m/s], and the largest of both ratios [-].
+    """
+    fastest = 0.0
+    for k in range(arms.size):
+        speed = max(abs(declared_rate[k]), abs(measured_rate[k])) * arms[k]
+        sizes[kinds[k]] = max(sizes[kinds[k]], speed)
+        fastest = max(fastest, speed)
+    max_speed = max(max_speed, fastest)
+    min_speed = max(MIN_RATE_RATIO * fastest, RATE_TOLERANCE * MIN_SPEED_RATIO * max_speed, distance_speed)
+    max_excess, max_doubt = 0.0, 0.0
+    for k in range(arms.size):
+        error, size = abs(declared_rate[k] - measured_rate[k]) * arms[k], sizes[kinds[k]]
+        excess[k] = error / max(RATE_TOLERANCE * size, min_speed)
+        doubt[k] = error / max(DOUBTFUL_RATE_TOLERANCE * size, min_speed)
+        max_excess, max_doubt = max(max_excess, excess[k]), max(max_doubt, doubt[k])
+    return max_speed, max_excess, max_doubt
+
+
+@compiled
+def follow_rates(drift, path, deviation, displacement, rates, arms, half_step, max_half_step_distance):
+    """Add a step to the distances of a body from where its rates lead; return the largest distance in half a step [m].
+
+    Args:
+        drift: see ``Consistency``, shape (coordinate,), changed [m].
+        path: see ``Consistency``, shape (coordinate,), changed [m].
+        deviation: distance that the step adds, shape (coordinate,), to write to [m].
+        displacement: change of the coordinates, shape (coordinate,) [m, rad].
+        rates: their rates at the start and the end of the step, shape (2, coordinate) [m/s, rad/s].
+        arms: see ``CoordinateSeries``.
+        half_step: half of the step [s].
+        max_half_step_distance: largest distance in half a step before [m].
+    """
+    for k in range(arms.size):
+        start_distance, end_distance = half_step * rates[0, k] * arms[k], half_step * rates[1, k] * arms[k]
+        max_half_step_distance = max(max_half_step_distance, abs(start_distance), abs(end_distance))
+        deviation[k] = displacement[k] * arms[k] - (start_distance + end_distance)
+        drift[k] += deviation[k]
+        path[k] += abs(displacement[k] * arms[k])
+    return max_half_step_distance
+
+
+@compiled
+def exceeds(deviation, drift, path, tolerance):
+    """Return whether a body is not where its rates lead.
+
+    Args:
+        deviation: see ``follow_rates`` [m].
+        drift: see ``follow_rates`` [m].
+        path: see ``follow_rates`` [m].
+        tolerance: distance that is allowed [m].
+    """
+    for k in range(drift.size):
+        if abs(deviation[k]) > tolerance or abs(drift[k]) > max(tolerance, RATE_TOLERANCE * path[k]):
+            return True
+    return False
 
 
 class CoordinateSeries(NamedTuple):
@@ -98,7 +177,9 @@ class MotionSource(NamedTuple):
             rows = np.array([(*p.position, p.angle, *p.velocity, p.spin) for p in poses])
             shifts = rows[:, :3] - rows[0, :3]
             shifts[:, 2] = _wrap_angle(shifts[:, 2])
-            return CoordinateSeries(shifts, rows[:, 3:], np.array([1.0, 1.0, self.bounding_radius]), _PLANE_KINDS)
+            return CoordinateSeries(
+                shifts, np.ascontiguousarray(rows[:, 3:]), np.array([1.0, 1.0, self.bounding_radius]), _PLANE_KINDS
+            )
         places = np.array([[*p.position, *_turn(poses[0], p)] for p in poses])
         rates = np.array([[*p.velocity, *([p.spin] if ndim == 2 else p.spins)] for p in poses])
         turns = (np.arange(places.shape[1]) >= ndim).astype(int)
@@ -160,6 +241,25 @@ class MidlineSource(NamedTuple):
         arms[2] = reference[3]
         kinds = np.repeat([0, 0, 1, 2], arms.shape[1])
         return CoordinateSeries(places.reshape(len(times), -1), rates.reshape(len(times), -1), arms.ravel(), kinds)
+
+    def refuse_motion(self, time: float, dt: float, cell: float) -> None:
+        """Refuse a midline that moves although its body is declared not to deform.
+
+        Args:
+            time: time [s].
+            dt: a step, after which the midline is compared [s].
+            cell: side of a cell [m].
+
+        Raises:
+            InvalidDesign: a station moves, or has a rate.
+        """
+        series = self.sample((time, time + dt))
+        distance = float(np.abs(np.array([series.coordinates[1], dt * series.rates[0]]) * series.arms).max())
+        if distance > RIGID_TOLERANCE * cell:
+            raise InvalidDesign(
+                f"{self.name} has deforms=False, and its midline moves by {distance:.3g} m in the first step of "
+                f"{dt:.3g} s, by its places or its rates; leave out deforms, or move the whole body by its motion."
+            )
 
     def error_text(self, index: int, declared_rate: np.ndarray, measured_rate: np.ndarray) -> str:
         """Return both rates of the worst station and the remedy."""
@@ -290,16 +390,20 @@ class Consistency:
             self._compare(time, dt)
         self.steps += 1
         series = self.source.sample((time, time + dt))
-        displacement, rate_displacement = series.coordinates[1] * series.arms, 0.5 * dt * series.rates * series.arms
-        self.max_half_step_distance = max(self.max_half_step_distance, float(np.abs(rate_displacement).max()))
-        deviation = displacement - rate_displacement.sum(axis=0)
-        self.drift, self.path = self.drift + deviation, self.path + np.abs(displacement)
+        count = series.arms.size
+        drift, path = (np.array(np.broadcast_to(a, count)) for a in (self.drift, self.path))
+        deviation = np.empty(count)
+        self.max_half_step_distance = follow_rates(
+            drift, path, deviation, series.coordinates[1], series.rates, series.arms, 0.5 * dt,
+            self.max_half_step_distance,
+        )  # fmt: skip
+        self.drift, self.path = drift, path
         tolerance = MAX_POSITION_ERROR * self.cell + self.max_half_step_distance
+        if not exceeds(deviation, drift, path, tolerance):
+            return
         is_inconsistent = (np.abs(deviation) > tolerance) | (
             np.abs(self.drift) > np.maximum(tolerance, RATE_TOLERANCE * self.path)
         )
-        if not is_inconsistent.any():
-            return
         worst_index = int(np.where(is_inconsistent, np.abs(self.drift), 0.0).argmax())
         raise InvalidDesign(
             f"at t = {time + dt:.4g} s {self.source.label(worst_index)} is {abs(self.drift[worst_index]):.3g} m away "
@@ -321,26 +425,17 @@ class Consistency:
         span = _COMPARISON_FRACTION * dt
         series = self.source.sample([time + k * span for k in range(3)])
         declared_rate, measured_rate = series.rates[0], (4 * series.coordinates[1] - series.coordinates[2]) / (2 * span)
-        declared_speed, measured_speed, rate_error = (
-            np.abs(rate * series.arms) for rate in (declared_rate, measured_rate, declared_rate - measured_rate)
-        )
-        sizes = np.array(
-            [np.maximum(declared_speed, measured_speed)[series.kinds == k].max() for k in range(series.kinds.max() + 1)]
-        )
-        self.max_speed = max(self.max_speed, float(sizes.max()))
-        min_speed = max(
-            MIN_RATE_RATIO * float(sizes.max()),
-            RATE_TOLERANCE * MIN_SPEED_RATIO * self.max_speed,
+        excess, doubt, sizes = np.zeros((3, series.arms.size))
+        self.max_speed, max_excess, max_doubt = compare_rates(
+            excess, doubt, sizes, declared_rate, measured_rate, series.arms, series.kinds, self.max_speed,
             DISTANCE_TOLERANCE * self.cell / dt,
-        )
-        excess = rate_error / np.maximum(RATE_TOLERANCE * sizes, min_speed)[series.kinds]
-        doubt = rate_error / np.maximum(DOUBTFUL_RATE_TOLERANCE * sizes, min_speed)[series.kinds]
-        self.consecutive_doubts = self.consecutive_doubts + 1 if (doubt > 1).any() else 0
+        )  # fmt: skip
+        self.consecutive_doubts = self.consecutive_doubts + 1 if max_doubt > 1 else 0
         if self.consecutive_doubts == MAX_CONSECUTIVE_ERRORS and not self.is_doubtful:
             self.is_doubtful = True
             text = self.source.error_text(int(doubt.argmax()), declared_rate, measured_rate)
             warn(Doubtful(f"at t = {time:.4g} s {text}"), stacklevel=4)
-        if not (excess > 1).any():
+        if not max_excess > 1:
             self.consecutive_errors = 0
             return
         self.consecutive_errors += 1

@@ -36,7 +36,7 @@ from math import ceil
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, Window, kernel_part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, Window, compiled, kernel_part, signed, threaded_part, unsigned
 from suchus.flow.grid import Grid
 
 SIDE = 8
@@ -111,8 +111,8 @@ def _spread_row(block, u, v, j, arm, b, window):  # type: ignore[no-untyped-def]
         block[3, b, k] += spread * arm
 
 
-@threaded
-def gather(u, v, window, block):  # type: ignore[no-untyped-def]
+@threaded_part
+def _gather(u, v, window, block):  # type: ignore[no-untyped-def]
     """Write the strengths of the blocks (4, row, column): source, vortex, and the moment's two parts.
 
     Corners belong to a block by their number, so its middle lies at ``SIDE b + (SIDE - 1) / 2`` cells. Strengths are
@@ -146,28 +146,134 @@ def gather(u, v, window, block):  # type: ignore[no-untyped-def]
 
 
 @kernel_part
-def _induced_at(x, y, block_centres, strength, min_square):  # type: ignore[no-untyped-def]
-    """Return the velocity that blocks at ``place`` (2, block) with ``strength`` (4, block) induce at a point."""
+def _fade(block, x, y, turn, keep, fading_fraction, axis, positions, strengths, count):  # type: ignore[no-untyped-def]
+    """Fade the vorticity of the blocks towards one side, and add the sources that stand for the wake that has left.
+
+    Args:
+        block: strengths of the blocks, shape (4, row, column), changed.
+        x: middles of the columns of blocks [cells].
+        y: middles of the rows of blocks [cells].
+        turn: sign of the sources: 1 or -1.
+        keep: fraction of the strength that stays, at each block along the axis [-].
+        fading_fraction: fraction of the wake that is faded there [-].
+        axis: axis of the side's normal: 0 is x, 1 is y.
+        positions: positions of the sources, shape (2, source), to write to [cells].
+        strengths: their strengths as those of a block, shape (4, source), to write to.
+        count: number of the sources before.
+
+    Returns:
+        The number of the sources with the new ones.
+    """
+    rows, columns = block.shape[1], block.shape[2]
+    total, moment = 0.0, 0.0
+    for b in range(rows):
+        for k in range(columns):
+            size = abs(block[1, b, k]) * fading_fraction[k if axis == 0 else b]
+            total += size
+            moment += size * (y[b] if axis == 0 else x[k])
+    centre = moment / total if total > 0.0 else 0.0
+    for n in range(columns if axis == 0 else rows):
+        defect = 0.0
+        for m in range(rows if axis == 0 else columns):
+            b, k = (m, n) if axis == 0 else (n, m)
+            arm_moment = block[2, b, k] if axis == 0 else -block[3, b, k]
+            defect -= block[1, b, k] * ((y[b] if axis == 0 else x[k]) - centre) + arm_moment
+        source = turn * fading_fraction[n] * defect / SIDE
+        if source != 0.0:
+            positions[axis, count], positions[1 - axis, count] = (x[n] if axis == 0 else y[n]), centre
+            strengths[0, count] = source
+            strengths[1, count], strengths[2, count], strengths[3, count] = 0.0, 0.0, 0.0
+            count += 1
+    for d in range(4):
+        for b in range(rows):
+            for k in range(columns):
+                block[d, b, k] *= keep[k if axis == 0 else b]
+    return count
+
+
+@kernel_part
+def _strong_blocks(block, x, y, positions, strengths, count):  # type: ignore[no-untyped-def]
+    """Add the blocks whose strength counts to the sources; return their number. For the arguments see ``_fade``."""
+    max_size = 0.0
+    for d in range(4):
+        for b in range(block.shape[1]):
+            for k in range(block.shape[2]):
+                max_size = max(max_size, abs(block[d, b, k]))
+    for b in range(block.shape[1]):
+        for k in range(block.shape[2]):
+            size = 0.0
+            for d in range(4):
+                size = max(size, abs(block[d, b, k]))
+            if size > MIN_STRENGTH_RATIO * max_size:
+                positions[0, count], positions[1, count] = x[k], y[b]
+                for d in range(4):
+                    strengths[d, count] = block[d, b, k]
+                count += 1
+    return count
+
+
+@kernel_part
+def _induced_at(x, y, positions, strengths, count, min_square):  # type: ignore[no-untyped-def]
+    """Return the velocity that the first ``count`` sources induce at a point; see ``_fade`` for their arrays."""
     u, v = 0.0, 0.0
-    cx, cy = block_centres[0], block_centres[1]
-    source, vortex, m_real, m_imag = strength[0], strength[1], strength[2], strength[3]
-    for k in range(cx.size):
-        dx, dy = x - cx[k], y - cy[k]
+    for k in range(unsigned(count)):
+        dx, dy = x - positions[0, k], y - positions[1, k]
         square = dx * dx + dy * dy
         inverse_square = 1.0 / (square if square > min_square else min_square)
         a, b = dx * inverse_square, -dy * inverse_square
         c, d = a * a - b * b, 2.0 * a * b
-        u += source[k] * a + vortex[k] * b + m_real[k] * c - m_imag[k] * d
-        v -= source[k] * b - vortex[k] * a + m_real[k] * d + m_imag[k] * c
+        u += strengths[0, k] * a + strengths[1, k] * b + strengths[2, k] * c - strengths[3, k] * d
+        v -= strengths[0, k] * b - strengths[1, k] * a + strengths[2, k] * d + strengths[3, k] * c
     return u / (2.0 * np.pi), v / (2.0 * np.pi)
 
 
-@threaded
-def induce(points, block_centres, strength, velocity):  # type: ignore[no-untyped-def]
+@threaded_part
+def _induce(points, positions, strengths, count, velocity):  # type: ignore[no-untyped-def]
     """Write the velocity at ``points`` (2, point) to ``velocity``; all lengths in cells."""
     min_square = 0.25 * SIDE**2
-    for t in prange(points.shape[1]):
-        velocity[0, t], velocity[1, t] = _induced_at(points[0, t], points[1, t], block_centres, strength, min_square)
+    for n in prange(points.shape[1]):
+        t = signed(n)
+        velocity[0, t], velocity[1, t] = _induced_at(
+            points[0, t], points[1, t], positions, strengths, count, min_square
+        )
+
+
+@compiled
+def induce(u, v, window, block, x, y, fadings, keep, fading_fractions, points, face_points, weights, signs, inflow):  # type: ignore[no-untyped-def]
+    """Write the velocity into the domain that the fields induce on the faces of all sides.
+
+    Args:
+        u: velocity along x, padded [m/s].
+        v: velocity along y, padded [m/s].
+        window: padded cell indices around the bodies.
+        block: work array for the strengths of the blocks, shape (4, row, column).
+        x: middles of the columns of blocks [cells].
+        y: middles of the rows of blocks [cells].
+        fadings: axis and sign of each fading, shape (fading, 2).
+        keep: fraction of the strength that stays, shape (fading, block along the axis) [-].
+        fading_fractions: fraction of the wake that is faded there, of the same shape [-].
+        points: points where the velocity is summed up, shape (2, point) [cells].
+        face_points: indices of the points of each face in the flattened velocities, shape (4, face).
+        weights: weights of these points, shape (4, face) [-].
+        signs: 1 on the faces of a side at a low end, -1 at a high end, shape (face,) [-].
+        inflow: velocity into the domain, shape (face,), to write to [m/s].
+    """
+    _gather(u, v, window, block)
+    max_count = block.shape[1] * block.shape[2] + fadings.shape[0] * max(block.shape[1], block.shape[2])
+    positions, strengths, count = np.empty((2, max_count)), np.empty((4, max_count)), 0
+    for n in range(fadings.shape[0]):
+        count = _fade(
+            block, x, y, fadings[n, 1], keep[n], fading_fractions[n], fadings[n, 0], positions, strengths, count
+        )  # fmt: skip
+    count = _strong_blocks(block, x, y, positions, strengths, count)
+    velocity = np.zeros((2, points.shape[1]))
+    _induce(points, positions, strengths, count, velocity)
+    flat = velocity.reshape(-1)
+    for k in range(inflow.size):
+        total = 0.0
+        for n in range(4):
+            total += weights[n, k] * flat[face_points[n, k]]
+        inflow[k] = signs[k] * total
 
 
 def cubic(knots: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -207,12 +313,12 @@ class OpenWater:
     """1 on the faces of a side at a low end, -1 at a high end, end to end, shape (face,) [-]."""
     ends: list[int] = field(init=False)
     """Index of the first face behind each side but the last [-]."""
-    fading_weights: dict[tuple[int, bool], tuple[tuple[float, ...], np.ndarray, np.ndarray]] = field(
-        init=False, default_factory=dict
+    fading_table: tuple[tuple[object, ...], tuple[np.ndarray, np.ndarray, np.ndarray]] | None = field(
+        init=False, default=None
     )
-    """For each side that carries a wake out, what its fading depends on, and the result of ``_weights`` for it."""
+    """Window and fadings of the last step, and the result of ``_fading_table`` for them."""
     middles: tuple[np.ndarray, np.ndarray] = field(init=False)
-    """Middles of the blocks (x, y), each of shape (row, column) [cells]."""
+    """Middles of the columns of blocks along x, and of the rows along y [cells]."""
     blocks: np.ndarray = field(init=False)
     """Strengths of the blocks, shape (4, row, column)."""
 
@@ -221,7 +327,7 @@ class OpenWater:
         nx, ny = self.cells
         rows, columns = -(-ny // SIDE), -(-nx // SIDE)
         self.blocks = np.zeros((4, rows, columns))
-        x, y = np.meshgrid(*(SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows)))
+        x, y = (SIDE * np.arange(n) + 0.5 * (SIDE - 1) for n in (columns, rows))
         self.middles = x, y
         points, interpolation = [], []
         for axis, coordinate in ((0, 0), (0, nx), (1, 0), (1, ny)):
@@ -263,21 +369,34 @@ class OpenWater:
 
     def inward_faces(self, velocity: np.ndarray, window: Window, fadings: list[Fading]) -> np.ndarray:
         """Return ``inward`` of all sides end to end, shape (face,) [m/s]."""
-        gather(velocity[0], velocity[1], np.array(window), self.blocks)
+        faces: np.ndarray = np.empty(self.signs.size)
         x, y = self.middles
-        strength, extra = self.blocks, []
-        for fading in fadings:
-            strength, sources = self._fade(strength, fading, window)
-            extra.append(sources)
-        size = np.maximum.reduce(np.abs(strength))
-        is_strong = size > MIN_STRENGTH_RATIO * size.max()
-        positions = np.concatenate([np.array([x[is_strong], y[is_strong]]), *(e[:2] for e in extra)], axis=1)
-        values = np.concatenate([strength[:, is_strong], *(e[2:] for e in extra)], axis=1)
-        induced_velocity = np.zeros(self.points.shape)
-        induce(self.points, positions, values, induced_velocity)
-        index, weight = self.face_points
-        faces: np.ndarray = self.signs * np.add.reduce(weight * induced_velocity.reshape(-1)[index])
+        points, weights = self.face_points
+        table, keep, fractions = self._fading_table(window, fadings)
+        induce(
+            velocity[0], velocity[1], np.array(window), self.blocks, x, y, table, keep, fractions, self.points, points,
+            weights, self.signs, faces,
+        )  # fmt: skip
         return faces
+
+    def _fading_table(self, window: Window, fadings: list[Fading]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return axis and sign of each fading, and what stays and what fades at each block; see ``induce``.
+
+        Args:
+            window: padded cell indices around the bodies.
+            fadings: the sides that carry a wake out.
+        """
+        key = (window, *fadings)
+        if self.fading_table is None or self.fading_table[0] != key:
+            count = max(size for size in self.blocks.shape[1:])
+            table = np.zeros((len(fadings), 2), np.int64)
+            keep, fractions = np.zeros((2, len(fadings), count))
+            for n, fading in enumerate(fadings):
+                weights = self._weights(fading, window)
+                table[n] = fading.axis, 1 if (fading.axis == 0) != fading.is_lower_side else -1
+                keep[n, : weights[0].size], fractions[n, : weights[1].size] = weights
+            self.fading_table = key, (table, keep, fractions)
+        return self.fading_table[1]
 
     def _weights(self, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
         """Return the fraction of the strength that stays in each column of blocks along an axis, and what fades there.
@@ -287,7 +406,7 @@ class OpenWater:
             window: padded cell indices around the bodies.
         """
         axis, cells = fading.axis, self.cells[fading.axis]
-        middle = self.middles[0][0] if axis == 0 else self.middles[1][:, 0]
+        middle = self.middles[axis]
         body_start, body_stop = (window[2], window[3]) if axis == 0 else (window[0], window[1])
         clearance = (
             (body_start if fading.is_lower_side else cells + 2 * PAD - body_stop) - PAD
@@ -297,10 +416,6 @@ class OpenWater:
         lateral_window = (window[0], window[1]) if axis == 0 else (window[2], window[3])
         guard = MIN_UNFADED_WIDTHS * (lateral_window[1] - lateral_window[0])
         length = max(min(FADE_FRACTION * clearance, clearance - guard), SIDE)
-        key, side = (length, fading.fraction), (axis, fading.is_lower_side)
-        stored = self.fading_weights.get(side)
-        if stored is not None and stored[0] == key:
-            return stored[1:]
 
         def weight(position: np.ndarray) -> np.ndarray:
             """Return the fraction of the strength that stays, at positions along the axis [cells]."""
@@ -311,33 +426,7 @@ class OpenWater:
             return weights
 
         fading_fraction = np.abs(weight(middle + SIDE / 2) - weight(middle - SIDE / 2))  # per column of blocks
-        self.fading_weights[side] = key, weight(middle), fading_fraction
-        return self.fading_weights[side][1:]
-
-    def _fade(self, strength: np.ndarray, fading: Fading, window: Window) -> tuple[np.ndarray, np.ndarray]:
-        """Return the faded strengths of the blocks, and the sources that stand for the wake that has left.
-
-        A source has position x and y, then the four strengths of a block: shape (6, source).
-
-        Args:
-            strength: strength of the blocks, shape (4, row, column).
-            fading: the side towards which the wake is faded.
-            window: padded cell indices around the bodies.
-        """
-        axis = fading.axis
-        axial, lateral = self.middles[axis], self.middles[1 - axis]
-        middle = axial[0] if axis == 0 else axial[:, 0]
-        keep, fading_fraction = self._weights(fading, window)
-        vortex, moment = strength[1], strength[2] if axis == 0 else -strength[3]
-        size = np.abs(vortex) * (fading_fraction if axis == 0 else fading_fraction[:, None])
-        total = size.sum()
-        centre = float((size * lateral).sum() / total) if total > 0 else 0.0
-        defect = -(vortex * (lateral - centre) + moment).sum(axis=axis) / SIDE
-        turn = 1 if (axis == 0) != fading.is_lower_side else -1
-        source = turn * fading_fraction * defect
-        sources = np.zeros((6, middle.size))
-        sources[axis], sources[1 - axis], sources[2] = middle, centre, source
-        return strength * (keep if axis == 0 else keep[:, None]), sources[:, source != 0]
+        return weight(middle), fading_fraction
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, kernel_part
 from suchus.flow.grid import Grid
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.water import Fluid
 
@@ -61,17 +61,17 @@ class Surface:
 
     def load(self, reference_point: tuple[float, ...]) -> Load:
         """Return the integral over the outline or the skin, torque about a point [m]."""
-        m = self.markers
-        push, rub = -self.pressure * m.normals * m.weight, self.shear * m.weight
-        force, arms = push + rub, m.points - np.array(reference_point)[:, None]
+        m, ndim = self.markers, len(self.shear)
+        planes = np.array(ROTATION_PLANES[ndim])
+        sums = np.zeros(2 * ndim + len(planes) + 1)
+        weight, normals, points, velocities = (kernel_array(a) for a in (m.weight, m.normals, m.points, m.velocities))
+        pressure, shear = kernel_array(self.pressure), kernel_array(self.shear)
+        add_loads(sums, pressure, shear, weight, normals, points, velocities, kernel_array(reference_point), planes)
+        numbers = sums.tolist()
         return Load(
-            pressure=tuple(push.sum(axis=1).tolist()),
-            shear=tuple(rub.sum(axis=1).tolist()),
-            moment=tuple(
-                float((arms[a] * force[b] - arms[b] * force[a]).sum()) for a, b in ROTATION_PLANES[len(force)]
-            ),
-            power=float(-(force * m.velocities).sum()),
-        )
+            pressure=tuple(numbers[:ndim]), shear=tuple(numbers[ndim : 2 * ndim]), moment=tuple(numbers[2 * ndim : -1]),
+            power=numbers[-1],
+        )  # fmt: skip
 
 
 def padded(points: np.ndarray, grid: Grid) -> np.ndarray:
@@ -92,19 +92,16 @@ def sample(water: Fluid, markers: Markers, density: float) -> Surface:
         markers: points on the body's surface.
         density: density of the water [kg/m^3].
     """
-    places, normals = padded(markers.points, water.grid), np.ascontiguousarray(markers.normals)
-    pressure, shear = np.empty(places.shape[1]), np.empty(places.shape)
-    steps = steps_of(water.p)
-    wall_pressure(water.p.reshape(-1), steps, places, normals, WALL_POINT_SPACING, pressure)
-    wall_shear(
-        water.velocity.reshape(water.ndim, -1), steps, places, normals, np.ascontiguousarray(markers.velocities),
-        np.ascontiguousarray(markers.spins) * water.grid.cell, np.array(ROTATION_PLANES[water.ndim]),
-        WALL_POINT_SPACING, shear,
+    pressure, shear = np.empty(markers.weight.size), np.empty(markers.points.shape)
+    points, normals, velocities, spins = (
+        kernel_array(a) for a in (markers.points, markers.normals, markers.velocities, markers.spins)
+    )
+    sample_skin(
+        water.p.reshape(-1), water.velocity.reshape(water.ndim, -1), steps_of(water.p), points, normals, velocities,
+        spins, np.array(water.grid.origin), water.grid.cell, np.array(ROTATION_PLANES[water.ndim]), water.level,
+        density, density * float(water.nu), pressure, shear,
     )  # fmt: skip
-    level = water.level
-    return Surface(
-        markers=markers, pressure=density * (pressure - level), shear=density * float(water.nu) * shear
-    )  # fmt: skip
+    return Surface(markers=markers, pressure=pressure, shear=shear)
 
 
 def momentum(velocity: np.ndarray, box: tuple[int, ...]) -> np.ndarray:
@@ -218,6 +215,14 @@ def interpolate_at(field, strides, position):
         strides: difference of the flat indices of neighbours along each axis, shape (axis,) [-].
         position: fractional index of the padded array along each axis, shape (axis,).
     """
+    if position.size == 2:
+        i, j = int(position[0]), int(position[1])
+        fraction_x, fraction_y = position[0] - i, position[1] - j
+        lower_index = i * strides[0] + j * strides[1]
+        upper_index = lower_index + strides[1]
+        lower_value = (1.0 - fraction_x) * field[lower_index] + fraction_x * field[lower_index + strides[0]]
+        upper_value = (1.0 - fraction_x) * field[upper_index] + fraction_x * field[upper_index + strides[0]]
+        return (1.0 - fraction_y) * lower_value + fraction_y * upper_value
     total = 0.0
     for corner in range(1 << position.size):
         weight, flat_index = 1.0, 0
@@ -248,8 +253,8 @@ def interpolate(a, steps, places, samples):
         samples[m] = interpolate_at(a, steps, position)
 
 
-@compiled
-def wall_pressure(p, steps, places, normals, gap, pressure):
+@kernel_part
+def _wall_pressure(p, steps, places, normals, gap, pressure):
     """Write the pressure at the markers from a parabola through three points off the wall.
 
     The points lie 1, 2 and 3 times ``gap`` cells off the wall; marker positions in padded indices of the cells.
@@ -272,8 +277,8 @@ def wall_pressure(p, steps, places, normals, gap, pressure):
             pressure[m] += (3.0, -3.0, 1.0)[k - 1] * interpolate_at(p, steps, position)
 
 
-@compiled
-def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear):
+@kernel_part
+def _wall_shear(velocity, steps, places, normals, walls, spins, cell, turns, gap, shear):
     """Write the rate of shear at the markers from a cubic through the wall and three points off the wall.
 
     The points lie 1, 2 and 3 times ``gap`` cells off the wall.
@@ -284,7 +289,8 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
         places: positions of the markers in padded indices, shape (axis, marker).
         normals: outward normals, shape (axis, marker).
         walls: velocities of the wall, shape (axis, marker) [m/s].
-        spins: angular velocities of the wall about the ndim of ``turns`` [m/s per cell].
+        spins: angular velocities of the wall about the axes of ``turns`` [rad/s].
+        cell: side of a cell [m].
         turns: the two axes across each axis of rotation, shape (turn, 2).
         gap: distance of the points [cells].
         shear: array to write to, shape (axis, marker) [m/s per cell].
@@ -300,8 +306,8 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
                 wall_velocity[d] = walls[d, m]
             for n in range(turns.shape[0]):
                 first_axis, second_axis = turns[n, 0], turns[n, 1]
-                wall_velocity[first_axis] -= spins[n, m] * k * gap * normals[second_axis, m]
-                wall_velocity[second_axis] += spins[n, m] * k * gap * normals[first_axis, m]
+                wall_velocity[first_axis] -= spins[n, m] * cell * k * gap * normals[second_axis, m]
+                wall_velocity[second_axis] += spins[n, m] * cell * k * gap * normals[first_axis, m]
             for c in range(ndim):
                 for d in range(ndim):
                     position[d] = places[d, m] + k * gap * normals[d, m] + (0.5 if d == c else 0.0)
@@ -311,3 +317,68 @@ def wall_shear(velocity, steps, places, normals, walls, spins, turns, gap, shear
             normal_shear += shear[d, m] * normals[d, m]
         for d in range(ndim):
             shear[d, m] -= normal_shear * normals[d, m]
+
+
+@compiled
+def sample_skin(
+    p, velocity, steps, points, normals, walls, spins, origin, cell, turns, level, density, viscosity, pressure, shear
+):  # fmt: skip
+    """Write pressure and friction at the markers; see ``_wall_pressure`` and ``_wall_shear``.
+
+    Args:
+        p: pressure over density, its cells end to end.
+        velocity: components, each with its cells end to end [m/s].
+        steps: distance in memory of neighbours along each axis [-].
+        points: positions of the markers, shape (axis, marker) [m].
+        normals: outward normals, shape (axis, marker).
+        walls: velocities of the wall, shape (axis, marker) [m/s].
+        spins: angular velocities of the wall about the axes of ``turns`` [rad/s].
+        origin: corner of the grid, shape (axis,) [m].
+        cell: side of a cell [m].
+        turns: the two axes across each axis of rotation, shape (turn, 2).
+        level: pressure over density from which the pressure counts.
+        density: density of the water [kg/m^3].
+        viscosity: density times viscosity over the cell [Pa s/m].
+        pressure: array to write to, shape (marker,) [Pa].
+        shear: array to write to, shape (axis, marker) [Pa].
+    """
+    places = np.empty(points.shape)
+    for d in range(points.shape[0]):
+        for m in range(points.shape[1]):
+            places[d, m] = (points[d, m] - origin[d]) / cell + (PAD - 0.5)
+    _wall_pressure(p, steps, places, normals, WALL_POINT_SPACING, pressure)
+    _wall_shear(velocity, steps, places, normals, walls, spins, cell, turns, WALL_POINT_SPACING, shear)
+    for m in range(pressure.size):
+        pressure[m] = density * (pressure[m] - level)
+        for d in range(points.shape[0]):
+            shear[d, m] *= viscosity
+
+
+@compiled
+def add_loads(sums, pressure, shear, weight, normals, points, velocities, reference_point, planes):
+    """Add pressure, friction, torque and power over a skin; see ``Surface.load``.
+
+    Args:
+        sums: force by pressure, force by friction, torques and power, shape (2 axis + turn + 1,), to add to.
+        pressure: shape (marker,) [Pa].
+        shear: shape (axis, marker) [Pa].
+        weight: length or area of each marker, shape (marker,) [m, m^2].
+        normals: outward normals, shape (axis, marker) [-].
+        points: positions of the markers, shape (axis, marker) [m].
+        velocities: velocities of the skin, shape (axis, marker) [m/s].
+        reference_point: point of the torques, shape (axis,) [m].
+        planes: the two axes across each axis of rotation, shape (turn, 2).
+    """
+    ndim = points.shape[0]
+    for m in range(weight.size):
+        for d in range(ndim):
+            push, rub = -pressure[m] * normals[d, m] * weight[m], shear[d, m] * weight[m]
+            sums[d] += push
+            sums[ndim + d] += rub
+            sums[sums.size - 1] -= (push + rub) * velocities[d, m]
+        for n in range(planes.shape[0]):
+            a, b = planes[n, 0], planes[n, 1]
+            force_a = (shear[a, m] - pressure[m] * normals[a, m]) * weight[m]
+            force_b = (shear[b, m] - pressure[m] * normals[b, m]) * weight[m]
+            sums[2 * ndim + n] += (points[a, m] - reference_point[a]) * force_b
+            sums[2 * ndim + n] -= (points[b, m] - reference_point[b]) * force_a

@@ -153,6 +153,11 @@ class Grid:
                 f"the {shape_name} {_times(pairs)} m with cells of {cell} m is empty; give rising limits and a "
                 f"positive cell."
             )
+        if cell > min(lengths):
+            raise InvalidDesign(
+                f"cells of {cell} m are wider than the {shape_name} {_times(pairs)} m; give a cell below "
+                f"{min(lengths):.6g} m, in metres as the {shape_name}."
+            )
         cells = _fitting(tuple(max(8, ceil(side / cell - POSITION_TOLERANCE)) for side in lengths))
         origin = []
         for d, ((start, _), n, side) in enumerate(zip(pairs, cells, lengths, strict=True)):

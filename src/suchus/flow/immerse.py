@@ -12,7 +12,16 @@ Source: Maertens and Weymouth 2015, Comput. Methods Appl. Mech. Eng. 283, 106-12
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import UNIT, compiled, kernel_part, ordered_part, signed, threaded, unsigned
+from suchus.flow.compiled import (
+    UNIT,
+    compiled,
+    kernel_part,
+    ordered_part,
+    signed,
+    threaded,
+    threaded_part,
+    unsigned,
+)
 from suchus.flow.slab import (
     MIN_SLABS,
     ZERO,
@@ -82,7 +91,7 @@ def moment1(distance):
 
 
 @threaded
-def fill(distance, normal, thickness, mu0, mu1):
+def fill(distance, normal, thickness, h, offset, mu0, mu1):
     """Fill the moments of the kernel at points.
 
     The kernel sees both surfaces of a thin body. So the fraction that a tail of any thickness takes from the cells
@@ -90,17 +99,19 @@ def fill(distance, normal, thickness, mu0, mu1):
     it, and the force shakes as the tail sweeps over the grid (12 % of its rms, against 1 %).
 
     Args:
-        distance: signed distance of each point from the surface [cells].
+        distance: signed distance of each point from the surface [m].
         normal: outward normal, shape (axis, point).
-        thickness: thickness of the body at the nearest point of the surface [cells].
+        thickness: thickness of the body at the nearest point of the surface [m].
+        h: side of a cell [m].
+        offset: offset of the wall outside the surface [cells].
         mu0: fluid fraction to write, shape (point,).
         mu1: half of the first moment along the normal to write, shape (axis, point) [cells].
     """
     for n in prange((distance.size + POINTS - 1) // POINTS):
         block = signed(n)
         for k in range(block * POINTS, min((block + 1) * POINTS, distance.size)):
-            near_distance = distance[k]
-            far_distance = -thickness[k] - near_distance
+            near_distance = distance[k] / h - offset
+            far_distance = -(thickness[k] / h + 2.0 * offset) - near_distance
             mu0[k] = min(max(moment0(near_distance) + moment0(far_distance), MIN_FLUID_FRACTION), 1.0)
             first_moment = 0.5 * (moment1(near_distance) - moment1(far_distance))
             for d in range(normal.shape[0]):
@@ -263,29 +274,9 @@ def _immerse_slab(
         velocity[j, k] = keep * (blend[j, k] - immersed_velocity) + immersed_velocity
 
 
-@threaded
-def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layout, inner, dt, keep):
-    """Write the immersed velocity of one component to the inner cells of the window.
-
-    ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[d]`` the kernel's moment
-    along axis d, all arrays of the window ``near``;
-    ``velocity = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
-
-    Args:
-        velocity: component to write.
-        blend: the component at the last stage.
-        raw: the fluid's own update without the pressure, array of the window.
-        b: the bodies' velocity, array of the window.
-        mu0: fluid fraction of the component's faces.
-        passage: fraction of the pressure's gradient that acts on the faces.
-        mu1: first moments of the kernel, shape (axis, slab, cell), halved, array of the window.
-        p: pressure over density.
-        component: 0 is x, 1 is y, 2 is z.
-        near_layout: row of the multigrid's layout with the window of the near arrays; see ``slab``.
-        inner: strides within a slab of the grid.
-        dt: length of the stage [cells per (m/s)].
-        keep: fraction of ``blend`` that stays [-].
-    """
+@threaded_part
+def _immerse_component(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layout, inner, dt, keep):
+    """Write the immersed velocity of one component to the inner cells of the window; see ``immerse``."""
     ej = UNIT if component == len(inner) else ZERO
     ei = ZERO
     for d in range(len(inner)):
@@ -308,3 +299,31 @@ def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, component, near_layou
                     velocity, blend, raw, b, mu0, passage, mu1, p, j, j - near_layout[w], start, stop, shift, strides,
                     ej, ei, dt, keep,
                 )  # fmt: skip
+
+
+@compiled
+def immerse(velocity, blend, raw, b, mu0, passage, mu1, p, near_layout, inner, dt, keep):
+    """Write the immersed velocity to the inner cells of the window.
+
+    ``raw`` is the fluid's own update without the pressure, ``b`` the body's velocity, ``mu1[c, d]`` the kernel's moment
+    along axis d on the faces of component c, all arrays of the window ``near``;
+    ``velocity = keep * blend + (1 - keep) * (immersed - dt passage grad p)``.
+
+    Args:
+        velocity: to write, shape (axis, slab, cell) [m/s].
+        blend: velocity at the last stage [m/s].
+        raw: the fluid's own update without the pressure, array of the window [m/s].
+        b: the bodies' velocity, array of the window [m/s].
+        mu0: fluid fraction of the faces, shape (axis, slab, cell) [-].
+        passage: fraction of the pressure's gradient that acts on the faces [-].
+        mu1: first moments of the kernel, shape (component, axis, slab, cell), halved, array of the window.
+        p: pressure over density.
+        near_layout: row of the multigrid's layout with the window of the near arrays; see ``slab``.
+        inner: strides within a slab of the grid.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stays [-].
+    """
+    for c in range(len(inner) + 1):
+        _immerse_component(
+            velocity[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, near_layout, inner, dt, keep
+        )  # fmt: skip

@@ -82,16 +82,12 @@ class Log:
             previous_contents: ``region_contents`` at the start of the step.
         """
         grid, loads = self.setup.grid, []
+        step_sums = water.immersion_sums, previous_contents, self.region_contents
         for rows, point, mirror_cuts in zip(water.rows, reference_points, water.mirror_cuts, strict=True):
             position = np.array(point)
-            body_sums = [
-                sums[rows.start : rows.stop] for sums in (water.immersion_sums, previous_contents, self.region_contents)
-            ]
-            sums = (
-                body_sums
-                if len(rows) == 1
-                else [np.concatenate([part_sums[:1] + part_sums[1:].sum(axis=0), part_sums]) for part_sums in body_sums]
-            )
+            sums = [part_sums[rows.start : rows.stop] for part_sums in step_sums]
+            if len(rows) > 1:
+                sums = [np.concatenate([part_sums[:1] + part_sums[1:].sum(axis=0), part_sums]) for part_sums in sums]
             actions = reaction(
                 *sums,
                 dt=dt,
@@ -102,9 +98,11 @@ class Log:
                 density=self.setup.density,
             ).of_whole_body(mirror_cuts)
             body_action, parts = actions[0], actions if len(rows) == 1 else actions[1:]
-            scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.ndim + 1) / dt
-            pressed = scale * water.internal_pressure_sums[rows.start : rows.stop]
-            pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (position - np.array(grid.origin))
+            pressed = np.zeros((len(rows), 1 + grid.ndim))
+            if len(water.immersion_sums) > len(water.rows):
+                scale = 2 ** sum(mirror_cuts) * self.setup.density * grid.cell ** (grid.ndim + 1) / dt
+                pressed = scale * water.internal_pressure_sums[rows.start : rows.stop]
+                pressed[:, 1:] = grid.cell * pressed[:, 1:] - pressed[:, :1] * (position - np.array(grid.origin))
             loads.append(FlowLoads(reference_point=position, total=body_action, parts=parts, internal_pressure=pressed))
         return loads
 

@@ -1,8 +1,13 @@
+# mypy: disable-error-code="no-untyped-def"
+# (the kernels get their types from numba)
 """Points along the outline or over the skin of a body, where loads are sampled."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from suchus.flow.compiled import compiled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,3 +52,37 @@ class Markers:
             normals=self.normals[:, mask], spins=self.spins[:, mask],
             part_index=None if self.part_index is None else self.part_index[mask], station=station, side=side,
         )  # fmt: skip
+
+
+def kernel_array(values: ArrayLike) -> np.ndarray:
+    """Return a copy for the kernels, of one type: they are compiled anew for strided and for read-only arrays."""
+    return np.array(values, float, order="C")
+
+
+@compiled
+def max_speed(velocities, stream):
+    """Return the fastest speed of markers past a stream [m/s]; a NaN stays one.
+
+    Args:
+        velocities: shape (axis, marker) [m/s].
+        stream: velocity of the stream, shape (axis,) [m/s].
+    """
+    max_square = 0.0
+    for k in range(velocities.shape[1]):
+        square = 0.0
+        for d in range(velocities.shape[0]):
+            square += (velocities[d, k] - stream[d]) ** 2
+        max_square = max_square if square <= max_square or max_square != max_square else square
+    return np.sqrt(max_square)
+
+
+@compiled
+def extent(points):
+    """Return the largest extent of points along an axis, shape (axis, marker) [m]."""
+    max_extent = 0.0
+    for d in range(points.shape[0]):
+        min_coordinate, max_coordinate = points[d, 0], points[d, 0]
+        for k in range(points.shape[1]):
+            min_coordinate, max_coordinate = min(min_coordinate, points[d, k]), max(max_coordinate, points[d, k])
+        max_extent = max(max_extent, max_coordinate - min_coordinate)
+    return max_extent

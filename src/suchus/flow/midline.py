@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields, replace
 from math import isfinite
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import show
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, section_motions
@@ -42,6 +42,10 @@ class MidlineState:
 
     def __post_init__(self) -> None:
         """Refuse arrays that do not fit each other, are not finite, or have a negative half-width."""
+        for name in _STATE_NAMES:
+            values = getattr(self, name)
+            if not isinstance(values, np.ndarray) and (values is not None or name != "half_width_rate"):
+                raise InvalidDesign(f"{name} of the midline is {show(values)}; give an array of numbers.")
         if self.x.ndim != 1 or self.x.size < 3:
             raise InvalidDesign(f"the midline has shape {self.x.shape}; give at least 3 stations in one row.")
         total, shape = 0.0, self.x.shape
@@ -133,6 +137,20 @@ def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
 _STATE_NAMES = tuple(field.name for field in fields(MidlineState))
 
 
+def check_state(state: object, time: float) -> MidlineState:
+    """Return what a body's spine gave at a time [s].
+
+    Raises:
+        InvalidDesign: it is no ``MidlineState``.
+    """
+    if not isinstance(state, MidlineState):
+        raise InvalidDesign(
+            f"the spine of a midline gives {show(state)} at t = {time:.4g} s; it returns a MidlineState, with "
+            f"position, heading, half-width and their rates."
+        )
+    return state
+
+
 def _copy_of(state: MidlineState) -> MidlineState:
     """Return a copy of a state, with arrays of its own; it is not checked again."""
     result = object.__new__(type(state))  # copy.copy takes four times as long
@@ -155,7 +173,7 @@ class CachedMidline:
     def __call__(self, time: float) -> MidlineState:
         """Return the midline at a time [s]; its arrays are copies."""
         if time not in self._states:
-            state = _copy_of(self._spine(time))
+            state = _copy_of(check_state(self._spine(time), time))
             if len(self._states) == self.MAX_CACHED_TIMES:
                 del self._states[next(iter(self._states))]
             self._states[time] = state
@@ -223,6 +241,8 @@ class Midline(Shape):
         """
         rows, columns = np.nonzero(is_near)
         px, py = x[columns], y[rows]
+        from scipy.spatial import KDTree  # noqa: PLC0415  a fifth of the time of an import of flow
+
         k = KDTree(np.column_stack([midline.x, midline.y])).query(np.column_stack([px, py]))[1]
         heading = midline.heading[k]
         axial_offset = (px - midline.x[k]) * np.cos(heading) + (py - midline.y[k]) * np.sin(heading)

@@ -11,11 +11,12 @@ wrong by 0.8 %. (The inertia of a translating cylinder, whose skin also keeps th
 """
 
 from dataclasses import dataclass
+from math import prod
 
 import numpy as np
 
 from suchus.flow.compiled import PAD, compiled, kernel_part, signed
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array
 from suchus.flow.pose import ROTATION_PLANES
 from suchus.flow.slab import row_length
 
@@ -58,29 +59,11 @@ def _tilt(sums, m, component, x, y, z, impulse):
         sums[m, 4] += -x * impulse
 
 
-@compiled
-def add_immersion_impulse(sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep):
-    """Add the impulse of the immersion on one component of the velocity in one stage, with its moments and energy.
-
-    ``mean``, ``raw``, ``mu1`` and ``owner`` are near arrays, those of the window; see ``slab``. The mean velocity is
-    needed: with that of the step's end alone the power is too large by half the work of the added mass in a step.
-
-    Args:
-        sums: shape (body, ``sums_of``), to add to [m/s per cell; moments about the grid's corner, lengths in cells].
-        velocity: the component after the stage [m/s].
-        blend: the component at the last stage [m/s].
-        raw: the fluid's own update without the pressure [m/s].
-        mean: the bodies' velocity, mean of the step's start and end [m/s].
-        passage: fraction of the pressure's gradient that acts on the faces [-].
-        mu1: first moments of the kernel, shape (axis, slab, cell).
-        p: pressure over density.
-        owner: part of the bodies that each face belongs to [-].
-        component: axis of the component.
-        layout: row of the multigrid's layout whose window counts; see ``slab``.
-        inner: strides within a slab.
-        dt: length of the stage [cells per (m/s)].
-        keep: fraction of ``blend`` that stayed [-].
-    """
+@kernel_part
+def _add_component_impulse(
+    sums, velocity, blend, raw, mean, passage, mu1, p, owner, component, layout, inner, dt, keep
+):  # fmt: skip
+    """Add the impulse of the immersion on one component of the velocity; see ``add_immersion_impulse``."""
     slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
     row_cells = signed(row_length(inner, p.shape[1]))
     columns = layout[3 * slab_axis + 3] - layout[3 * slab_axis + 2] + 1
@@ -113,6 +96,34 @@ def add_immersion_impulse(sums, velocity, blend, raw, mean, passage, mu1, p, own
                 sums[m, turn + 1] += mean[j - layout[w], index] * impulse
 
 
+@compiled
+def add_immersion_impulse(sums, velocity, blend, raw, mean, passage, mu1, p, owners, layout, inner, dt, keep):
+    """Add the impulse of the immersion in one stage, with its moments and energy.
+
+    ``mean``, ``raw``, ``mu1`` and ``owners`` are near arrays, those of the window; see ``slab``. The mean velocity is
+    needed: with that of the step's end alone the power is too large by half the work of the added mass in a step.
+
+    Args:
+        sums: shape (body, ``sums_of``), to add to [m/s per cell; moments about the grid's corner, lengths in cells].
+        velocity: after the stage, shape (axis, slab, cell) [m/s].
+        blend: velocity at the last stage [m/s].
+        raw: the fluid's own update without the pressure [m/s].
+        mean: the bodies' velocity, mean of the step's start and end [m/s].
+        passage: fraction of the pressure's gradient that acts on the faces [-].
+        mu1: first moments of the kernel, shape (component, axis, slab, cell).
+        p: pressure over density.
+        owners: part of the bodies that each face belongs to, shape (axis, slab, cell) [-].
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        inner: strides within a slab.
+        dt: length of the stage [cells per (m/s)].
+        keep: fraction of ``blend`` that stayed [-].
+    """
+    for c in range(len(inner) + 1):
+        _add_component_impulse(
+            sums, velocity[c], blend[c], raw[c], mean[c], passage[c], mu1[c], p, owners[c], c, layout, inner, dt, keep
+        )  # fmt: skip
+
+
 @kernel_part
 def _add_to_owners(sums, column, owners, o, index, columns, contribution):
     """Add a cell's contribution to the parts that own its faces, an equal amount for each face.
@@ -142,7 +153,7 @@ def dilatation_work(sums, p, source, owners, layout, inner, dt):
         sums: shape (body, ``sums_of``), to change.
         p: pressure over density.
         source: divergence of the bodies' own motion, near array.
-        owners: part that each face belongs to, one near array for each axis.
+        owners: part that each face belongs to, near array, shape (axis, slab, cell).
         layout: row of the multigrid's layout whose window counts; see ``slab``.
         inner: strides within a slab.
         dt: length of the step [cells per (m/s)].
@@ -170,7 +181,7 @@ def add_internal_pressure(sums, p, mu0, owners, layout, near_layout, inner, weig
             its first moments about the grid's corner [.., .. cells].
         p: pressure over density.
         mu0: fluid fraction of the faces, shape (axis, slab, cell).
-        owners: part that each face belongs to, one near array for each axis.
+        owners: part that each face belongs to, near array, shape (axis, slab, cell).
         layout: row of the multigrid's layout whose window counts; see ``slab``.
         near_layout: the same with the window of the near arrays.
         inner: strides within a slab.
@@ -256,21 +267,9 @@ def subtract_joint_pressure(sums, p, mu0, owners, layout, near_layout, inner, we
                     sums[m, 4] += -x * force
 
 
-@compiled
-def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
-    """Add what the region of each body holds of one component of the velocity.
-
-    Args:
-        sums: shape (body, ``contents_of``), to add to: the sums of its motion, its volume and first moments [m/s,
-            m^2/s^2, cells].
-        b: the bodies' velocity along the component, near array [m/s].
-        mu0: fluid fraction of the component's faces.
-        owner: part that each face belongs to, near array.
-        component: axis of the component.
-        layout: row of the multigrid's layout whose window counts; see ``slab``.
-        near_layout: the same with the window of the near arrays.
-        inner: strides within a slab.
-    """
+@kernel_part
+def _add_component_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
+    """Add what the region of each body holds of one component of the velocity; see ``add_contents``."""
     slab_axis, w, turn = len(inner), len(inner) + 2, _spin_column(len(inner))
     row_cells = signed(row_length(inner, mu0.shape[1]))
     columns = near_layout[3 * slab_axis + 3] - near_layout[3 * slab_axis + 2] + 1
@@ -305,6 +304,24 @@ def add_contents(sums, b, mu0, owner, component, layout, near_layout, inner):
                     sums[m, turn + 5] += axis_fraction * z
 
 
+@compiled
+def add_contents(sums, b, mu0, owners, layout, near_layout, inner):
+    """Add what the region of each body holds.
+
+    Args:
+        sums: shape (body, ``contents_of``), to add to: the sums of its motion, its volume and first moments [m/s,
+            m^2/s^2, cells].
+        b: the bodies' velocity, near array, shape (axis, slab, cell) [m/s].
+        mu0: fluid fraction of the faces, shape (axis, slab, cell).
+        owners: part that each face belongs to, near array, shape (axis, slab, cell).
+        layout: row of the multigrid's layout whose window counts; see ``slab``.
+        near_layout: the same with the window of the near arrays.
+        inner: strides within a slab.
+    """
+    for c in range(len(inner) + 1):
+        _add_component_contents(sums, b[c], mu0[c], owners[c], c, layout, near_layout, inner)
+
+
 def skin_contents(
     markers: Markers, offset: float, origin: tuple[float, ...], h: float, count: int
 ) -> np.ndarray:  # fmt: skip
@@ -319,18 +336,45 @@ def skin_contents(
         h: cell [m].
         count: parts of the body, the rows of the result, shape (part, ``contents_of``) [-].
     """
-    ndim = len(origin)
-    w = offset * markers.weight / h ** (ndim - 1)
-    position = [(p - start) / h for p, start in zip(markers.points, origin, strict=True)]
-    v = markers.velocities
-    square = v[0] ** 2 + v[1] ** 2
-    if ndim == 3:
-        square = square + v[2] ** 2
-    angular = (position[a] * v[b] - position[b] * v[a] for a, b in ROTATION_PLANES[ndim])
-    columns = (*v, *angular, 0.5 * square, np.ones(w.size), *position)
-    if count == 1 or markers.part_index is None:
-        return (w * np.array(columns)).sum(axis=1)[None]
-    return np.stack([np.bincount(markers.part_index, w * column, count) for column in columns], axis=1)
+    sums = np.zeros((count, contents_of(len(origin))))
+    parts = np.zeros(markers.weight.size, np.int64)
+    if count > 1 and markers.part_index is not None:
+        parts = markers.part_index.astype(np.int64)
+    points, velocities, weight = (kernel_array(a) for a in (markers.points, markers.velocities, markers.weight))
+    planes = np.array(ROTATION_PLANES[len(origin)])
+    add_skin_contents(sums, points, velocities, weight, parts, np.array(origin), h, offset, planes)
+    return sums
+
+
+@compiled
+def add_skin_contents(sums, points, velocities, weight, parts, origin, h, offset, planes):
+    """Add the contents of the layer of water along a skin; see ``skin_contents``.
+
+    Args:
+        sums: shape (part, ``contents_of``), to add to.
+        points: positions of the markers, shape (axis, marker) [m].
+        velocities: shape (axis, marker) [m/s].
+        weight: length or area of each marker, shape (marker,) [m, m^2].
+        parts: part that each marker belongs to, shape (marker,).
+        origin: corner of the grid, shape (axis,) [m].
+        h: cell [m].
+        offset: offset of the wall [cells].
+        planes: the two axes across each axis of rotation, shape (turn, 2).
+    """
+    ndim, turns = points.shape[0], planes.shape[0]
+    factor, energy = offset / h ** (ndim - 1), ndim + turns
+    for k in range(weight.size):
+        w, m, square = factor * weight[k], parts[k], 0.0
+        for d in range(ndim):
+            sums[m, d] += w * velocities[d, k]
+            square += velocities[d, k] ** 2
+            sums[m, energy + 2 + d] += w * (points[d, k] - origin[d]) / h
+        for n in range(turns):
+            a, b = planes[n, 0], planes[n, 1]
+            arm_a, arm_b = (points[a, k] - origin[a]) / h, (points[b, k] - origin[b]) / h
+            sums[m, ndim + n] += w * (arm_a * velocities[b, k] - arm_b * velocities[a, k])
+        sums[m, energy] += 0.5 * w * square
+        sums[m, energy + 1] += w
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -359,6 +403,8 @@ class Reaction:
 
         Forces through a mirror, and torques about the axes in it, vanish.
         """
+        if not any(mirror_cuts):
+            return self
         times, has_mirror = (
             2 ** sum(mirror_cuts),
             [
@@ -371,6 +417,44 @@ class Reaction:
             [0.0 if has_mirror[a] or has_mirror[b] else times for a, b in ROTATION_PLANES[len(has_mirror)]]
         )
         return Reaction(force=force_factor * self.force, moment=moment_factor * self.moment, power=times * self.power)
+
+
+@compiled
+def fill_reaction(loads, impulse, start_contents, end_contents, dt, push, centre, planes, h, density):
+    """Write force, torque and power on each part; see ``reaction``.
+
+    Args:
+        loads: shape (part, axis + turn + 1), to write to.
+        impulse: shape (part, ``sums_of``).
+        start_contents: shape (part, ``contents_of``).
+        end_contents: the same at the end of the step.
+        dt: the step [s].
+        push: uniform acceleration of the water, shape (axis,) [m/s^2].
+        centre: point of the torque, from the corner of the grid, shape (axis,) [cells].
+        planes: the two axes across each axis of rotation, shape (turn, 2).
+        h: cell [m].
+        density: density of the water [kg/m^3].
+    """
+    ndim, turns = push.size, planes.shape[0]
+    energy = ndim + turns
+    scale = density * h**ndim
+    for m in range(loads.shape[0]):
+        size = 0.5 * (start_contents[m, energy + 1] + end_contents[m, energy + 1])
+        power = (impulse[m, energy] - (end_contents[m, energy] - start_contents[m, energy])) / dt
+        for d in range(ndim):
+            change = end_contents[m, d] - start_contents[m, d]
+            loads[m, d] = (change - impulse[m, d]) / dt - size * push[d]
+            power += push[d] * 0.5 * (start_contents[m, d] + end_contents[m, d])
+        for n in range(turns):
+            a, b = planes[n, 0], planes[n, 1]
+            change = end_contents[m, ndim + n] - start_contents[m, ndim + n]
+            moment_a = 0.5 * (start_contents[m, energy + 2 + a] + end_contents[m, energy + 2 + a])
+            moment_b = 0.5 * (start_contents[m, energy + 2 + b] + end_contents[m, energy + 2 + b])
+            torque = (change - impulse[m, ndim + n]) / dt - (moment_a * push[b] - moment_b * push[a])
+            loads[m, ndim + n] = scale * h * (torque - (centre[a] * loads[m, b] - centre[b] * loads[m, a]))
+        for d in range(ndim):
+            loads[m, d] *= scale
+        loads[m, energy] = scale * power
 
 
 def reaction(
@@ -390,21 +474,12 @@ def reaction(
         h: cell [m].
         density: density of the water [kg/m^3].
     """
-    ndim, turns = len(origin), ROTATION_PLANES[len(origin)]
-    energy = ndim + len(turns)
-    change = end_contents[..., : energy + 1] - start_contents[..., : energy + 1]
-    mean_contents = 0.5 * (end_contents + start_contents)
+    ndim = len(origin)
+    shape = impulse.shape[:-1]
+    loads = np.empty((prod(shape), ndim + len(ROTATION_PLANES[ndim]) + 1))
+    part_impulse, start, end = (sums.reshape(len(loads), -1) for sums in (impulse, start_contents, end_contents))
     centre = (reference_point - np.array(origin)) / h
-    size, first_moments = mean_contents[..., energy + 1, None], mean_contents[..., energy + 2 :]
-    force = (change[..., :ndim] - impulse[..., :ndim]) / dt - size * np.array(push)
-    moment = [
-        (change[..., ndim + n] - impulse[..., ndim + n]) / dt
-        - (first_moments[..., a] * push[b] - first_moments[..., b] * push[a])
-        - (centre[a] * force[..., b] - centre[b] * force[..., a])
-        for n, (a, b) in enumerate(turns)
-    ]  # fmt: skip
-    power, scale = (impulse[..., energy] - change[..., energy]) / dt, density
-    for d, acceleration in enumerate(push):
-        power = power + acceleration * mean_contents[..., d]
-        scale *= h
-    return Reaction(force=scale * force, moment=scale * h * np.stack(moment, axis=-1), power=scale * power)
+    planes = np.array(ROTATION_PLANES[ndim])
+    fill_reaction(loads, part_impulse, start, end, dt, np.array(push), centre, planes, h, density)
+    loads = loads.reshape(*shape, -1)
+    return Reaction(force=loads[..., :ndim], moment=loads[..., ndim:-1], power=loads[..., -1])

@@ -11,8 +11,9 @@ from suchus.flow.compiled import PAD
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import POSITION_TOLERANCE, Grid
 from suchus.flow.midline import Midline, MidlineState
-from suchus.flow.pose import angle_text
-from suchus.flow.sides import NAMES, Inflow, Sides
+from suchus.flow.pose import Oscillation, angle_text
+from suchus.flow.sides import NAMES, Inflow, Outflow, Sides
+from suchus.flow.swimmer import to_degrees_of_freedom
 from suchus.flow.trunk import Trunk
 
 if TYPE_CHECKING:
@@ -23,6 +24,9 @@ MAX_DENSITY_RATIO = 100.0
 
 MAX_INFLOW_DIFFERENCE = 0.1
 """Mean inflow minus the stream, over the stream, above which they contradict [-]."""
+
+MIN_CONTACT_CELLS, MAX_CONTACT_CELLS = 1.0, 10.0
+"""Reach of a contact outside which it is probably in another unit [cells]."""
 
 MAX_HEADING_ERROR = 0.1
 """Mean angle between the headings of a midline and its direction above which they contradict [rad]."""
@@ -38,7 +42,9 @@ def implausible_inputs(setup: "Setup") -> Iterator[str]:
         yield from _angles(body)
         if isinstance(body, FreeBody):
             yield from _free_body(body, setup.density, setup.grid.ndim)
+            yield from _without_effect(body, setup.density, setup.grid.ndim)
     yield from _inflows(setup)
+    yield from _contact(setup)
     yield from _positions(setup.coarse_grid or setup.grid, setup.sides)
 
 
@@ -47,6 +53,16 @@ def _angles(body: AnyBody) -> Iterator[str]:
     pose = body.pose(0.0) if isinstance(body, Body) else body
     for name in ("angle", "pitch", "roll"):
         text = angle_text(f"the {name} of {body.name} at the start", getattr(pose, name))
+        if text is not None:
+            yield text
+    motion = body.motion if isinstance(body, Body) else None
+    if isinstance(motion, Oscillation):
+        text = angle_text(f"the amplitude of the pitch of {body.name}", motion.pitch)
+        if text is not None:
+            yield text
+    anchor = body.anchor if isinstance(body, FreeBody) and body.anchor is not None else ()
+    for angle in anchor[2:] if len(anchor) == 3 else anchor[3:]:
+        text = angle_text(f"an angle of the anchor of {body.name}", angle)
         if text is not None:
             yield text
 
@@ -74,16 +90,65 @@ def _free_body(body: FreeBody, water_density: float, ndim: int) -> Iterator[str]
         )
 
 
+def _without_effect(body: FreeBody, water_density: float, ndim: int) -> Iterator[str]:
+    """Yield a sentence for a weight, springs or dampers that cannot move a body."""
+    if any(body.gravity) and body.density in (None, water_density):
+        yield (
+            f"gravity of {body.name} is {body.gravity} m/s2, and its density is the water's, so that it has no weight "
+            f"in water: gravity does nothing. Give a density in kg/m3, or leave out gravity."
+        )
+    if ndim == 3 and body.free is not None and len(body.free) == 3 and any(body.gravity[2:]):
+        return  # ``_free_body`` says it
+    is_free = to_degrees_of_freedom((True,) * 3 * (ndim - 1) if body.free is None else body.free, ndim)
+    for name in ("gravity", "springs", "dampers"):
+        values = getattr(body, name)
+        components = (
+            np.pad(np.array(values, float), (0, is_free.size - len(values)))
+            if name == "gravity"
+            else to_degrees_of_freedom(values, ndim)
+        )
+        if any(values) and not (np.flatnonzero(components)[:, None] == np.flatnonzero(is_free)).any():
+            yield (
+                f"{name}={values} of {body.name} acts only along degrees of freedom that free={body.free} locks: it "
+                f"does nothing. Free one of them, or leave out {name}."
+            )
+
+
+def _contact(setup: "Setup") -> Iterator[str]:
+    """Yield a sentence for a contact whose reach is no few cells, or that moves no body."""
+    if setup.contact is None:
+        return
+    cells = setup.contact.gap / setup.grid.cell
+    if not MIN_CONTACT_CELLS <= cells <= MAX_CONTACT_CELLS:
+        yield (
+            f"the contact's gap is {setup.contact.gap:.4g} m or {cells:.3g} cells. It is a distance in metres; two to "
+            f"three cells are right: give {2.5 * setup.grid.cell:.3g} m."
+        )
+    if not any(isinstance(body, FreeBody) for body in setup.bodies):
+        yield "a contact is given and no FreeBody: it moves no body whose motion is given. Leave out contact."
+
+
 def _inflows(setup: "Setup") -> Iterator[str]:
     """Yield a sentence for each inflow whose mean differs from the far stream."""
     stream, grid = setup.far_velocity(0.0), setup.coarse_grid or setup.grid
     for k, (name, side) in enumerate(zip(NAMES, setup.sides.of_axes(grid.ndim), strict=False)):
         axis, sign = k // 2, 1 if k % 2 == 0 else -1
-        if not isinstance(side, Inflow) or not stream[axis]:
+        inward = sign * stream[axis]
+        if isinstance(side, Outflow) and inward > 0:
+            yield (
+                f"the stream enters with {inward:.4g} m/s through the {name} side, an Outflow, which carries water "
+                f"out. Make it a Stream() or an Inflow, or turn the stream round."
+            )
+        if not isinstance(side, Inflow):
             continue
         places = np.meshgrid(*(grid.centres(PAD, PAD + n, d) for d, n in enumerate(grid.cells) if d != axis))
-        mean, inward = float(np.mean(side.inflow_velocity(0.0, *places))), sign * stream[axis]
-        if abs(mean - inward) > MAX_INFLOW_DIFFERENCE * abs(inward):
+        mean = float(np.mean(side.inflow_velocity(0.0, *places)))
+        if mean < 0:
+            yield (
+                f"the mean inflow through the {name} side is {mean:.4g} m/s: water leaves there. Positive is into the "
+                f"domain, on each side."
+            )
+        if stream[axis] and abs(mean - inward) > MAX_INFLOW_DIFFERENCE * abs(inward):
             yield (
                 f"the mean inflow through the {name} side is {mean:.4g} m/s and the stream has {inward:.4g} m/s there. "
                 f"The water begins with the stream and then follows the inflow: make them equal, or leave out stream."

@@ -15,6 +15,7 @@ from numba import prange
 
 from suchus.flow.compiled import PAD, Window, compiled, kernel_part, signed, threaded_part, unsigned
 from suchus.flow.multigrid import DINV, FACES, B, X, cycle, faces_of, level
+from suchus.flow.project import max_of_column, summed_column
 from suchus.flow.slab import EDGE, MIN_SLABS, row_count, row_length, slabs_per_block
 from suchus.flow.stencil import LANES, apply_slabs, copy_slab, largest_size, seal_slab
 
@@ -211,22 +212,6 @@ def _keep(x, e, z, d, alpha, beta, previous_alpha, inner):
                 _rise(x, e, j, alpha)
 
 
-@kernel_part
-def _total(sums, column):
-    total, k = 0.0, unsigned(column)
-    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
-        total += sums[j, k]
-    return total
-
-
-@kernel_part
-def _max_of_column(sums, column):
-    maximum, k = 0.0, unsigned(column)
-    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
-        maximum = sums[j, k] if sums[j, k] > maximum else maximum
-    return maximum
-
-
 @compiled
 def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limit, max_limit, min_cycles, max_cycles):
     """Solve for the right side ``B`` of level 0; on return ``B`` is the residual.
@@ -270,14 +255,14 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
             d, q, previous_alpha, is_pending, is_stored = q, d, 0.0, False, True
         cycle(d if k == 0 else z, store, layout, buffer, rects, inner, repeats)
         _write_slab_products(d if k == 0 else z, r, d, faces, level_layout, inner, sums)
-        z_az, d_az, r_z = _total(sums, 0), _total(sums, 1), _total(sums, 2)
+        z_az, d_az, r_z = summed_column(sums, 0), summed_column(sums, 1), summed_column(sums, 2)
         turn = 0.0 if k == 0 else -d_az / d_ad
         d_ad = z_az + turn * d_az
         if d_ad < MIN_ENERGY_RATIO * z_az:
             turn, d_ad = 0.0, z_az
         if not d_ad > 0:
             break
-        alpha, beta = (r_z + turn * _total(sums, 3)) / d_ad, turn
+        alpha, beta = (r_z + turn * summed_column(sums, 3)) / d_ad, turn
         if k == 0:
             _first_step(r, d, faces, level_layout, real(alpha), inner, repeats, sums)
             previous_alpha = alpha
@@ -286,7 +271,7 @@ def solve(x, d, q, store, layout, buffer, rects, inner, repeats, sums, mean_limi
             is_pending = True
         k += 1
         previous_residuals = mean, maximum
-        mean, maximum = _total(sums, 0) / cells, _max_of_column(sums, 1)
+        mean, maximum = summed_column(sums, 0) / cells, max_of_column(sums, 1)
         if k >= min_cycles and mean <= mean_limit and maximum <= max_limit:
             break
         excess = max(mean / mean_limit, maximum / max_limit)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import degrees, isfinite, pi, radians
+from math import cos, degrees, hypot, isfinite, pi, radians, sin
 from typing import Any
 
 import numpy as np
@@ -33,8 +33,7 @@ def rotate_vectors(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> t
 
 def length(parts: Sequence[float] | np.ndarray) -> float:
     """Return the length of a vector of one, two or three parts, in their unit."""
-    vector = np.asarray(parts, float)
-    return abs(float(vector[0])) if vector.size == 1 else float(speeds(vector))
+    return hypot(*parts)
 
 
 def speeds(velocity: np.ndarray) -> np.ndarray:
@@ -188,13 +187,13 @@ class Pose:
 
     def to_body(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points of the world in the body's frame [m]."""
-        c, s = np.cos(self.angle), np.sin(self.angle)
+        c, s = cos(self.angle), sin(self.angle)
         dx, dy = x - self.position[0], y - self.position[1]
         return c * dx + s * dy, c * dy - s * dx
 
     def rotate_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return directions of the body's frame in the world frame, in the plane."""
-        c, s = np.cos(self.angle), np.sin(self.angle)
+        c, s = cos(self.angle), sin(self.angle)
         return c * x - s * y, s * x + c * y
 
     def velocity_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -212,6 +211,30 @@ class Pose:
 
 Motion = Callable[[float], Pose]
 """Pose as a function of the time [s]."""
+
+
+class CachedMotion:
+    """A motion that caches its last poses: a step needs the pose at the same times often."""
+
+    MAX_CACHED_TIMES = 8
+    """Number of times that are cached [-]."""
+
+    def __init__(self, motion: Motion) -> None:
+        self._motion, self._poses = motion, dict[float, Pose]()
+
+    def __call__(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        pose = self._poses.get(time)
+        if pose is None:
+            pose = self._motion(time)
+            if len(self._poses) == self.MAX_CACHED_TIMES:
+                del self._poses[next(iter(self._poses))]
+            self._poses[time] = pose
+        return pose
+
+    def clear(self) -> None:
+        """Clear the cache, because the motion has changed."""
+        self._poses.clear()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -235,16 +258,19 @@ class Oscillation:
 
     def __call__(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        rate = 2 * np.pi * self.frequency
+        rate = 2 * pi * self.frequency
         heave, pitch = rate * time + self.phase, rate * time + self.pitch_phase
+        heave_sine, speed = sin(heave), rate * cos(heave)
         return Pose(
             position=tuple(
-                mean + amplitude * np.sin(heave)
-                for mean, amplitude in zip_longest(self.centre, self.heave, fillvalue=0.0)
+                [
+                    mean + amplitude * heave_sine
+                    for mean, amplitude in zip_longest(self.centre, self.heave, fillvalue=0.0)
+                ]
             ),
-            angle=self.mean_angle + self.pitch * np.sin(pitch),
-            velocity=tuple(rate * amplitude * np.cos(heave) for amplitude in self.heave),
-            spin=rate * self.pitch * np.cos(pitch),
+            angle=self.mean_angle + self.pitch * sin(pitch),
+            velocity=tuple([speed * amplitude for amplitude in self.heave]),
+            spin=rate * self.pitch * cos(pitch),
         )
 
 

@@ -5,7 +5,7 @@
 import numpy as np
 from numba import prange
 
-from suchus.flow.compiled import PAD, UNIT, compiled, kernel_part, signed, threaded, unsigned
+from suchus.flow.compiled import PAD, UNIT, compiled, kernel_part, signed, threaded_part, unsigned
 from suchus.flow.slab import (
     EDGE,
     MIN_SLABS,
@@ -18,7 +18,7 @@ from suchus.flow.slab import (
     window_columns,
     window_rows,
 )
-from suchus.flow.stencil import LANES, largest_size, seal_slab, summed_size
+from suchus.flow.stencil import LANES, largest_size, seal_ends, seal_slab, summed_size
 
 
 @kernel_part
@@ -29,7 +29,7 @@ def _divergence_slab(r, velocity, slab, mean, inner):
         r: residual, shape (slab, cell).
         velocity: shape (axis, slab, cell).
         slab: the slab.
-        mean: mean over the domain, which is subtracted.
+        mean: mean over the domain, which is subtracted; see ``_mean_residual``.
         inner: strides within a slab.
     """
     j, slab_axis = unsigned(slab), unsigned(len(inner))
@@ -41,11 +41,9 @@ def _divergence_slab(r, velocity, slab, mean, inner):
         r[j, k] = net + (velocity[slab_axis, j, k] - velocity[slab_axis, j + UNIT, k]) - mean
 
 
-@threaded
-def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, repeats, sums):
-    """Write the residual ``source - div u - mean`` of the pressure equation, and its sum and maximum slab by slab.
-
-    Cells that lie wholly inside the body get 0: no pressure acts there.
+@threaded_part
+def _residual_slabs(r, velocity, source, dinv, level_layout, near_layout, mean, inner, repeats, sums):
+    """Write the residual ``source - div u - mean``, and its sum and maximum slab by slab; see ``residual``.
 
     Args:
         r: residual, shape (slab, cell).
@@ -54,7 +52,7 @@ def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, 
         dinv: inverse diagonal of the pressure equation, 0 inside the body.
         level_layout: row of the layout for the finest level; see ``slab``.
         near_layout: the window around the bodies; see ``slab``.
-        mean: see ``mean_residual``.
+        mean: see ``_mean_residual``.
         inner: strides within a slab.
         repeats: which axes are periodic.
         sums: summed and largest absolute value, shape (slab, 4).
@@ -80,7 +78,7 @@ def residual(r, velocity, source, dinv, level_layout, near_layout, mean, inner, 
 
 @kernel_part
 def _mean_of_plane(u, v, source, level_layout, near_layout):
-    """Return the mean of ``source - div u`` in the plane; see ``mean_residual``."""
+    """Return the mean of ``source - div u`` in the plane; see ``_mean_residual``."""
     s, t, b = PAD, u.shape[0] - PAD, u.shape[1] - PAD
     total = 0.0
     for j in range(s, t):
@@ -95,7 +93,7 @@ def _mean_of_plane(u, v, source, level_layout, near_layout):
 
 @kernel_part
 def _mean_in_space(velocity, source, level_layout, near_layout, inner):
-    """Return the mean of ``source - div u`` in space; see ``mean_residual``."""
+    """Return the mean of ``source - div u`` in space; see ``_mean_residual``."""
     end, row_cells, total = velocity.shape[1] - PAD, signed(row_length(inner, velocity.shape[2])), 0.0
     rows, columns = signed(row_count(inner, velocity.shape[2])), row_cells - 2 * PAD
     for row in range(PAD, rows + PAD):
@@ -115,8 +113,8 @@ def _mean_in_space(velocity, source, level_layout, near_layout, inner):
     return total / ((end - PAD) * rows * columns)
 
 
-@compiled
-def mean_residual(velocity, source, level_layout, near_layout, inner):
+@kernel_part
+def _mean_residual(velocity, source, level_layout, near_layout, inner):
     """Return the mean of ``source - div u``: the inflow through the sides and the volume that the bodies displace.
 
     Args:
@@ -129,6 +127,52 @@ def mean_residual(velocity, source, level_layout, near_layout, inner):
     if len(inner) == 1:
         return _mean_of_plane(velocity[0], velocity[1], source, level_layout, near_layout)
     return _mean_in_space(velocity, source, level_layout, near_layout, inner)
+
+
+@kernel_part
+def summed_column(sums, column):
+    """Return the sum of a column over the slabs of the domain."""
+    total, k = 0.0, unsigned(column)
+    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
+        total += sums[j, k]
+    return total
+
+
+@kernel_part
+def max_of_column(sums, column):
+    """Return the largest number of a column over the slabs of the domain; a NaN stays one."""
+    maximum, k = 0.0, unsigned(column)
+    for j in range(unsigned(PAD), unsigned(sums.shape[0] - PAD)):
+        maximum = maximum if sums[j, k] <= maximum or maximum != maximum else sums[j, k]
+    return maximum
+
+
+@compiled
+def residual(r, velocity, source, dinv, level_layout, near_layout, inner, repeats, sums):
+    """Write the residual ``source - div u`` of the pressure equation, less its mean; return its size.
+
+    Cells that lie wholly inside the body get 0: no pressure acts there.
+
+    Args:
+        r: residual, shape (slab, cell).
+        velocity: shape (axis, slab, cell).
+        source: divergence of the bodies' own motion, an array of the window ``near_layout``.
+        dinv: inverse diagonal of the pressure equation, 0 inside the body.
+        level_layout: row of the layout for the finest level; see ``slab``.
+        near_layout: the window around the bodies; see ``slab``.
+        inner: strides within a slab.
+        repeats: which axes are periodic.
+        sums: work array, shape (slab, 4).
+
+    Returns:
+        Mean and maximum of its absolute value.
+    """
+    mean = r.dtype.type(_mean_residual(velocity, source, level_layout, near_layout, inner))
+    _residual_slabs(r, velocity, source, dinv, level_layout, near_layout, mean, inner, repeats, sums)
+    cells = 1
+    for axis in range(len(inner) + 1):
+        cells *= level_layout[1 + axis]
+    return summed_column(sums, 0) / cells, max_of_column(sums, 1)
 
 
 @kernel_part
@@ -231,13 +275,41 @@ def _along_sides(x, inner):
     return total / count
 
 
-@threaded
-def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
+@compiled
+def side_mean(x, inner):
+    """Return the mean of a field over the outermost cells of the domain, a corner cell counting for each of its sides.
+
+    Args:
+        x: the field, shape (slab, cell).
+        inner: strides within a slab.
+    """
+    return _along_sides(x, inner)
+
+
+@threaded_part
+def _correct_slabs(velocity, p, d, z, a, b, passage, level_layout, level, inner, repeats, gain):
+    """Correct velocity and pressure slab by slab, and fill the pressure beside the domain; see ``correct``."""
+    end = p.shape[0] - PAD
+    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
+    for n in prange((end - PAD + block_size - 1) // block_size):
+        block_start = PAD + signed(n) * block_size
+        x = np.empty((2, p.shape[1]), p.dtype)
+        lower_slab, mid = 0, 1
+        _add(x, mid, d, z, block_start - 1, a, b)
+        for j in range(block_start, min(block_start + block_size, end)):
+            lower_slab, mid = mid, lower_slab
+            _add(x, mid, d, z, j, a, b)
+            _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
+            seal_slab(p, j, inner, repeats)
+
+
+@compiled
+def correct(velocity, p, d, z, a, b, passage, level_layout, inner, repeats, gain):
     """Subtract ``passage grad x`` from the velocity and add ``gain x`` to the pressure, where ``x = a d + b z``.
 
     The mean of the added pressure along the sides is zero. Without this condition the pressure drifts and single
     precision resolves its differences less and less. Values on the edges of the domain are corrected with a mirrored
-    ``x``, which leaves them unchanged.
+    ``x``, which leaves them unchanged. The pressure beside the domain is mirrored, or periodic.
 
     Args:
         velocity: shape (axis, slab, cell).
@@ -249,20 +321,12 @@ def correct(velocity, p, d, z, a, b, passage, level_layout, inner, gain):
         passage: share of the pressure gradient that acts on each face, shape (axis, slab, cell).
         level_layout: row of the layout for the finest level; see ``slab``.
         inner: strides within a slab.
+        repeats: which axes are periodic.
         gain: factor from ``x`` to the pressure.
     """
-    end = p.shape[0] - PAD
-    block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
     level = p.dtype.type(a * _along_sides(d, inner) + b * _along_sides(z, inner))
-    for n in prange((end - PAD + block_size - 1) // block_size):
-        block_start = PAD + signed(n) * block_size
-        x = np.empty((2, p.shape[1]), p.dtype)
-        lower_slab, mid = 0, 1
-        _add(x, mid, d, z, block_start - 1, a, b)
-        for j in range(block_start, min(block_start + block_size, end)):
-            lower_slab, mid = mid, lower_slab
-            _add(x, mid, d, z, j, a, b)
-            _correct_slab(velocity, p, j, x, lower_slab, mid, passage, level_layout, level, gain, inner)
+    _correct_slabs(velocity, p, d, z, a, b, passage, level_layout, level, inner, repeats, gain)
+    seal_ends(p, repeats[len(inner)])
 
 
 @kernel_part
@@ -279,8 +343,8 @@ def _speeds(output, velocity, slab, inner):
         output[0, k] = speed + (a if a > b else b)
 
 
-@threaded
-def fastest(velocity, inner, sums):
+@threaded_part
+def _fastest_slabs(velocity, inner, sums):
     """Write the largest sum of absolute velocity components in each slab to ``sums[:, 0]``."""
     end = velocity.shape[1] - PAD
     block_size = slabs_per_block(inner, end - PAD, MIN_SLABS)
@@ -290,3 +354,10 @@ def fastest(velocity, inner, sums):
         for j in range(start, min(start + block_size, end)):
             _speeds(speed, velocity, j, inner)
             sums[j, 0] = largest_size(speed, 0, inner, top)
+
+
+@compiled
+def fastest(velocity, inner, sums):
+    """Return the largest sum of absolute velocity components in a cell [m/s]; ``sums`` is a work array (slab, 4)."""
+    _fastest_slabs(velocity, inner, sums)
+    return max_of_column(sums, 0)

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import Protocol
 
 import numpy as np
 
-from suchus.core.errors import InvalidDesign
+from suchus.core.errors import InvalidDesign, OutsideLimits
+from suchus.core.kinds import is_number, show
 from suchus.flow.force import interpolate, padded, steps_of
 from suchus.flow.grid import Grid
 from suchus.flow.water import Fluid
@@ -152,5 +154,13 @@ class Rake:
 
 
 def due_after(time: float, interval: float | None) -> float:
-    """Return the next multiple of an interval after a time [s]; 0, which has always passed, if the interval is None."""
+    """Return the next multiple of an interval after a time [s]; 0, which has always passed, if the interval is None.
+
+    Raises:
+        OutsideLimits: the interval is not a positive number.
+    """
+    if interval is not None and not (is_number(interval) and isfinite(interval) and interval > 0):
+        raise OutsideLimits(
+            f"the interval of watch is {show(interval)} s; give a positive number, or None to watch every step."
+        )
     return 0.0 if interval is None else float((np.floor(time / interval * (1 + 1e-12)) + 1) * interval * (1 - 1e-12))

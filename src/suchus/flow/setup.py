@@ -15,9 +15,9 @@ from suchus.flow.contact import BodyContact
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, extent, kernel_array, max_speed
+from suchus.flow.midline import Midline, check_state
 from suchus.flow.nest import patch_sides
-from suchus.flow.pose import speeds
 from suchus.flow.resolution import (
     MAX_FORCE_ERROR,
     WARNING_FORCE_ERROR,
@@ -29,6 +29,7 @@ from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import NAMES, Periodic, Sides
 from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
+from suchus.flow.trunk import Trunk
 
 MIN_LAYER_CELLS = required_cells(MAX_FORCE_ERROR)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
@@ -137,7 +138,7 @@ class Setup:
         if self.follow is not None and self.follow not in names:
             raise InvalidDesign(f"the grid is to follow {self.follow!r}, and the bodies are named {names}.")
         self._check_dimension()
-        self._check_passage()
+        self._check_passage(self.far_velocity(0.0), "")
         if self.scheme != QUICK:  # the check compiles the scheme
             self.scheme.check()
         if self.follow is not None:
@@ -168,18 +169,22 @@ class Setup:
                 f"third pair, or a plane shape."
             )
 
-    def _check_passage(self) -> None:
+    def _check_passage(self, stream: tuple[float, ...], time_text: str) -> None:
         """Refuse a far stream through a side through which no water passes.
+
+        Args:
+            stream: velocity of the far water [m/s].
+            time_text: when, for the message; empty for a constant stream.
 
         Raises:
             InvalidDesign: naming the side.
         """
-        for axis, component in enumerate(self.far_velocity(0.0)):
+        for axis, component in enumerate(stream):
             for name in NAMES[2 * axis : 2 * axis + 2]:
                 side = getattr(self.sides, name)
                 if component and not (side.is_permeable or isinstance(side, Periodic)) and side.is_domain_end:
                     raise InvalidDesign(
-                        f"stream has {component:.4g} m/s along {'xyz'[axis]}, and the {name} side is a "
+                        f"stream has {component:.4g} m/s along {'xyz'[axis]}{time_text}, and the {name} side is a "
                         f"{type(side).__name__}, through which no water passes; take a stream without that component, "
                         f"another side, or start= for water that moves in a closed box."
                     )
@@ -194,6 +199,7 @@ class Setup:
         if callable(self.stream):
             stream = self.stream(time)
             self._check_stream(stream, f" at t = {time:.4g} s")
+            self._check_passage(stream, f" at t = {time:.4g} s")
         else:
             stream = self.stream
         return stream if len(stream) == self.grid.ndim else (*stream, 0.0)
@@ -216,6 +222,10 @@ class Setup:
         if self.start is None:
             return self.far_velocity(0.0)[component] + self._gust(component, points)
         velocities = self.start(*points)
+        if not isinstance(velocities, Sequence | np.ndarray):
+            raise InvalidDesign(
+                f"start gives {show(velocities)}; it returns {self.grid.ndim} arrays, velocities along each axis [m/s]."
+            )
         if len(velocities) != self.grid.ndim:
             raise InvalidDesign(
                 f"start gives {len(velocities)} velocities; one along each of {self.grid.ndim} axes counts."
@@ -265,6 +275,8 @@ class Setup:
         """
         thin_fractions = {}
         for body in self.bodies:
+            if isinstance(body.shape, Midline | Trunk):
+                check_state(body.shape.spine(0.0), 0.0)
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
             pose = pose.in_dimensions(self.grid.ndim)
             window = window_of(body, pose, self.grid, 0.0, *self._closed_ends)
@@ -321,9 +333,9 @@ class Setup:
         Raises:
             InvalidDesign: the estimate is above ``MAX_FORCE_ERROR``; the message names a sufficient cell.
         """
-        extent = float(np.ptp(markers.points, axis=1).max())
-        speed = float(speeds(markers.velocities - np.array(stream)[:, None]).max())
-        cells, is_blunt = cells_across(extent, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
+        length = extent(kernel_array(markers.points))
+        speed = max_speed(kernel_array(markers.velocities), np.array(stream, float))
+        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),
             required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
@@ -333,7 +345,7 @@ class Setup:
             million_cells = prod(self.grid.cells) * (min_cells / cells) ** self.grid.ndim / 1e6
             size = f" (this domain then takes {million_cells:.3g} million cells)" if self.grid.ndim == 3 else ""
             raise InvalidDesign(
-                f"at t = {time:.4g} s and Reynolds number {speed * extent / self.viscosity:.4g} the boundary layer of "
+                f"at t = {time:.4g} s and Reynolds number {speed * length / self.viscosity:.4g} the boundary layer of "
                 f"{body.name} is {layer:.3g} m thin and a cell {self.grid.cell:.3g} m: its force would be off by some "
                 f"{100 * error:.0f} %; take cells of at most {layer / min_cells:.3g} m{size}, better "
                 f"{layer / required_cells(WARNING_FORCE_ERROR, is_compact=is_blunt):.3g} m, a lower Reynolds number, "

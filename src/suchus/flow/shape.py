@@ -13,10 +13,12 @@ from typing import ClassVar
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
+from suchus.core.kinds import is_number, show
 from suchus.flow.ellipsoid import measure_ellipse
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_outline
 from suchus.flow.pose import Pose
+from suchus.flow.rigid import pose_row, ring_bounds, to_body_points, to_world_field, to_world_skin
 
 
 @dataclass(slots=True)
@@ -94,6 +96,11 @@ class Shape(ABC):
         return True
 
 
+def _whole(values: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return values at the points of a window as an array of its shape, its numbers end to end."""
+    return np.ascontiguousarray(np.broadcast_to(values, shape) if np.shape(values) != shape else values, float)
+
+
 _COARSE_POINTS, _MIN_POINTS = 256, 32
 """Points with which the length of an outline is measured, and fewest points of the markers [-]."""
 
@@ -108,8 +115,8 @@ def check_positive(name: str, value: float) -> None:
     Raises:
         InvalidDesign: naming the value.
     """
-    if not (isfinite(value) and value > 0):
-        raise InvalidDesign(f"{name} is {value} m; a positive length is needed.")
+    if not (is_number(value) and isfinite(value) and value > 0):
+        raise InvalidDesign(f"{name} is {show(value)} m; a positive length is needed.")
 
 
 class Solid(Shape):
@@ -125,20 +132,23 @@ class Solid(Shape):
 
     def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
         """Return distance, normal and velocity on the points of a window; see ``Shape``."""
-        wx, wy = x[None, :], y[:, None]
-        d, nx, ny = self.distance(*pose.to_body(wx, wy))
-        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(wx, wy))
-        return Field(d, *pose.rotate_in_plane(nx, ny), vx, vy, np.full(d.shape, np.inf))
+        row, shape = pose_row(pose), (y.size, x.size)
+        body_points, field = np.empty((2, *shape)), np.empty((4, *shape))
+        to_body_points(body_points, x, y, row)
+        d, nx, ny = (_whole(a, shape) for a in self.distance(*body_points))
+        to_world_field(field, nx, ny, x, y, row)
+        return Field(d, field[0], field[1], field[2], field[3], np.full(shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of the outline's edges; see ``Shape``."""
-        centres, normal, length, station = _edges(self, float(spacing))
-        points = np.stack(pose.to_world(*centres))
+        centres, body_normals, length, station = _edges(self, float(spacing))
+        points, normals, velocities = np.empty((3, *centres.shape))
+        to_world_skin(points, normals, velocities, centres, body_normals, pose_row(pose))
         return Markers(
             points=points,
             weight=length,
-            velocities=np.stack(pose.velocity_in_plane(*points)),
-            normals=np.stack(pose.rotate_in_plane(*normal)),
+            velocities=velocities,
+            normals=normals,
             spins=np.full((1, length.size), pose.spin),
             station=station,
             side=np.zeros(length.size),
@@ -146,8 +156,8 @@ class Solid(Shape):
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
         """Return the rectangle around the outline."""
-        x, y = pose.to_world(*_ring(self, _COARSE_POINTS))
-        return float(x.min()), float(x.max()), float(y.min()), float(y.max())
+        x0, x1, y0, y1 = ring_bounds(*_ring(self, _COARSE_POINTS), pose_row(pose))
+        return x0, x1, y0, y1
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments of the outline's polygon."""
@@ -162,11 +172,16 @@ def _ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
     try:
         return _cached_ring(shape, count)
     except TypeError:
-        return shape.outline(count)
+        return _measure_ring(shape, count)
 
 
 @lru_cache(maxsize=64)
 def _cached_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+    return _measure_ring(shape, count)
+
+
+def _measure_ring(shape: Solid, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return what ``_ring`` does, without a cache; the arrays are to be read only."""
     x, y = (np.array(line, float) for line in shape.outline(count))
     x.flags.writeable = y.flags.writeable = False
     return x, y
@@ -194,14 +209,11 @@ def _edges(shape: Solid, spacing: float) -> Edges:
 
 @lru_cache(maxsize=64)
 def _cached_edges(shape: Solid, spacing: float) -> Edges:
-    edges = _measure_edges(shape, spacing)
-    for array in edges:
-        array.flags.writeable = False
-    return edges
+    return _measure_edges(shape, spacing)
 
 
 def _measure_edges(shape: Solid, spacing: float) -> Edges:
-    """Return what ``_edges`` does, without a cache."""
+    """Return what ``_edges`` does, without a cache; the arrays are to be read only."""
     coarse_ring = np.stack(_ring(shape, _COARSE_POINTS))
     perimeter = float(np.hypot(*(np.roll(coarse_ring, -1, axis=1) - coarse_ring)).sum())
     corners = np.stack(_ring(shape, max(_MIN_POINTS, int(np.ceil(perimeter / spacing)))))
@@ -209,7 +221,10 @@ def _measure_edges(shape: Solid, spacing: float) -> Edges:
     edges = next_corners - corners
     length = np.hypot(*edges)
     normals = np.stack([edges[1], -edges[0]]) / length
-    return (corners + next_corners) / 2, normals, length, np.cumsum(length) - length / 2
+    measured = (corners + next_corners) / 2, normals, length, np.cumsum(length) - length / 2
+    for array in measured:
+        array.flags.writeable = False
+    return measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -252,7 +267,9 @@ class Ellipse(Solid):
 
     def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return signed distance [m] and outward normal [-], by Newton's method for the nearest point."""
-        px, py = (np.ascontiguousarray(coordinate, float) for coordinate in np.broadcast_arrays(x, y))
+        px, py = x, y
+        if x.shape != y.shape or not (x.flags.c_contiguous and y.flags.c_contiguous):
+            px, py = (np.ascontiguousarray(coordinate, float) for coordinate in np.broadcast_arrays(x, y))
         fields = np.empty((3, px.size))
         measure_ellipse(fields, px.ravel(), py.ravel(), np.array([self.length / 2, self.width / 2]))
         d, nx, ny = fields.reshape(3, *px.shape)
@@ -273,8 +290,9 @@ class Ellipse(Solid):
         """
         a, b = self.length / 2, self.width / 2
         reach = (a if a > b else b) * abs(a * a - b * b) / (a * a + b * b)
-        tip = (reach, 0.0) if a > b else (0.0, reach)
-        return np.stack(pose.to_world(*np.outer(tip, [-1.0, 1.0])))
+        x, y, cosine, sine, *_ = pose_row(pose)
+        dx, dy = (reach * cosine, reach * sine) if a > b else (-reach * sine, reach * cosine)
+        return np.array([[x - dx, x + dx], [y - dy, y + dy]])
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the smaller axis."""

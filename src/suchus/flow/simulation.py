@@ -12,6 +12,7 @@ import numpy as np
 
 from suchus.core import threads
 from suchus.core.errors import InvalidDesign, OutsideLimits, UnknownName
+from suchus.core.kinds import is_number, show
 from suchus.flow import checkpoint as store
 from suchus.flow import contact
 from suchus.flow.added import AddedMass, added_mass, generalised_added_mass, symmetric
@@ -25,11 +26,11 @@ from suchus.flow.free import FreeBody
 from suchus.flow.immerse import wall_offset
 from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
-from suchus.flow.markers import Markers
+from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
 from suchus.flow.midline import CachedMidline, Midline
 from suchus.flow.nest import Nested
-from suchus.flow.pose import Pose, length, speeds
+from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
@@ -43,6 +44,9 @@ from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resti
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
 
+MIN_THREAD_CELLS = 16_384
+"""Cells for each thread of the kernels: on fewer, threads wait for each other longer than they compute [-]."""
+
 ADDED_MASS_INTERVAL = 8
 """Steps between two computations of a free body's added mass [-]."""
 
@@ -52,12 +56,27 @@ RATE_CHECK_INTERVAL = 8
 LAYER_SPEED_FACTOR = 1.5
 """Factor by which a moving body may exceed the speed that the grid resolves before the run stops [-]."""
 
+MAX_STEP_RATIO = 1.2
+"""Largest step over the one in which the fastest water or body crosses a cell [-]."""
+
 OFFSET_TOLERANCE = 1e-3
 """Change of the wall offset above which bodies at rest are placed again [cells]; it changes a force by 0.04 %."""
 
 
-def _remembering(body: AnyBody) -> AnyBody:
-    """Return a body whose midline, if it has one, is cached for each time within a step."""
+def _remembering(body: AnyBody, ndim: int) -> AnyBody:
+    """Return a body whose motion and midline, if it has one, are cached for each time within a step.
+
+    Its poses have as many components as the domain has axes.
+
+    Args:
+        body: the body.
+        ndim: number of axes of the domain, 2 or 3.
+    """
+    if isinstance(body, Body):
+        checked = body.pose
+        is_fixed = isinstance(body.motion, Pose)
+        motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
+        body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
     if not isinstance(body.shape, Midline | Trunk):
         return body
     shape = copy(body.shape)
@@ -67,7 +86,8 @@ def _remembering(body: AnyBody) -> AnyBody:
 
 def _fastest_marker(markers: Markers) -> float:
     """Return the fastest speed of a body's surface in the frame of the grid [m/s]."""
-    return float(speeds(markers.velocities).max())
+    speed: float = max_speed(kernel_array(markers.velocities), np.zeros(len(markers.velocities)))
+    return speed
 
 
 Watcher = Callable[["Simulation"], None]
@@ -97,7 +117,7 @@ class Simulation(Fields):
 
         Args:
             setup: what is simulated.
-            thread_count: threads of the kernels; None takes those of ``threads.count`` [-].
+            thread_count: threads of the kernels; None takes those of ``threads.count``, and fewer for a small grid [-].
 
         Raises:
             InvalidDesign: bodies overlap, or see ``Setup.check_bodies``.
@@ -114,9 +134,14 @@ class Simulation(Fields):
         )
         self.ndim = setup.grid.ndim
         self.frame = np.zeros((2, self.ndim))  # position and velocity of the grid
-        self._bodies = [_remembering(body) for body in setup.bodies]
+        self._bodies = [_remembering(body, self.ndim) for body in setup.bodies]
+        self._numbers = {body.name: number for number, body in enumerate(self._bodies)}
         self.swimmers = {b.name: Swimmer.from_body(b) for b in self._bodies if isinstance(b, FreeBody)}
-        self._threads = threads.count() if thread_count is None else thread_count
+        cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
+        max_threads = max(1, cells // MIN_THREAD_CELLS)
+        self._threads = min(threads.count(), max_threads) if thread_count is None else thread_count
+        if self._threads < 1:
+            raise OutsideLimits(f"a simulation is to use {thread_count} threads; give at least 1.")
         self._log, self._watch = Log(setup), Watch(setup)
         self._last_step = 0.0
         self._frame_velocity_at(0.0)
@@ -131,6 +156,8 @@ class Simulation(Fields):
         self._starts_at_once = length(stream) > 0 and setup.start is None
         self._latest_step: _LatestStep | None = None
         self._loads: list[FlowLoads] = []
+        self._poses: list[Pose] = []  # of bodies at the end of the last step, in the frame of the grid
+        self._fastest_marker_speed: tuple[list[Markers], float] | None = None
         self._outlines = outlines = [
             b.shape.markers(0.0, self._in_frame(self.pose(b.name)), setup.grid.cell) for b in self._bodies
         ]
@@ -164,31 +191,31 @@ class Simulation(Fields):
         """
         cell, consistencies, changing = self.setup.grid.cell, [], []
         if isinstance(body, Body):
-            pose = body.pose(0.0).in_dimensions(self.ndim)
+            pose = body.pose(0.0)
             outline = body.shape.markers(0.0, pose, cell)
             reach = float(speeds(outline.points - np.array(pose.position)[:, None]).max())
             fixed = isinstance(body.motion, Pose)
             if fixed and isinstance(body.shape, Cylinder | Sphere):  # it may spin in place
                 pose = replace(pose, spin=0.0, spin_x=0.0, spin_y=0.0)
-            consistencies.append(
-                Consistency(
-                    MotionSource(body.name, lambda t: pose if fixed else body.pose(t).in_dimensions(self.ndim), reach),
-                    cell,
-                )
-            )
-            changing.append(not fixed)
+            if not fixed or any(pose.velocity) or pose.spins.any():  # else nothing is to be compared
+                source = MotionSource(
+                    body.name, lambda t: pose if fixed else body.pose(t), reach
+                )  # fmt: skip
+                consistencies.append(Consistency(source, cell))
+                changing.append(not fixed)
         if isinstance(body.shape, Midline | Trunk):
-            consistencies.append(
-                Consistency(MidlineSource(body.name, body.shape.spine), cell, check_interval=RATE_CHECK_INTERVAL)
-            )
+            midline = MidlineSource(body.name, body.shape.spine)
+            consistencies.append(Consistency(midline, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(not body.shape.rigid)
         if isinstance(body.shape, Linked):
             links = LinkSource(body.name, body.shape.motion, body.shape.bounding_radii)
             consistencies.append(Consistency(links, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(True)
         step = self.setup.step or self._limit(max(self.water.fastest(), self._speed))
-        for consistency in consistencies:
+        for consistency, is_changing in zip(consistencies, changing, strict=True):
             consistency.start(0.0, consistency.max_step(0.0, step))
+            if not is_changing and isinstance(consistency.source, MidlineSource):
+                consistency.source.refuse_motion(0.0, step, cell)
         return [consistency for consistency, is_changing in zip(consistencies, changing, strict=True) if is_changing]
 
     # --- state -------------------------------------------------------------------------------------------------
@@ -202,11 +229,13 @@ class Simulation(Fields):
         """
         body = self._bodies[self._number(name)]
         if isinstance(body, Body):
-            return body.pose(self.time if time is None else time).in_dimensions(self.ndim)
+            return body.pose(self.time if time is None else time)
         return self.swimmers[name].pose(body.shape.mass(self.time if time is None else time))
 
     def _in_frame(self, pose: Pose) -> Pose:
         """Return a pose of the world frame in the frame of the grid."""
+        if self.setup.follow is None:  # the grid stays where it is
+            return pose
         position, velocity = (
             tuple(a - b for a, b in zip(vector, frame, strict=True))
             for vector, frame in zip((pose.position, pose.velocity), self.frame, strict=True)
@@ -244,19 +273,30 @@ class Simulation(Fields):
             for consistency in self._consistency_checks:
                 limit = consistency.max_step(self.time, limit)
             return self._accelerating_step(self.setup.courant * limit, self.setup.courant)
-        if self.setup.step > 1.2 * limit:
-            raise OutsideLimits(
-                f"at t = {self.time:.4g} s a step of {self.setup.step:.3g} s has Courant number "
-                f"{self.setup.step / limit:.3g}; above 1 it explodes. Take a step of at most {0.8 * limit:.3g} s, "
-                f"or None."
-            )
-        longest = self._accelerating_step(self.setup.step, 1.2)
+        self._refuse_long_step(self.setup.step, limit)
+        longest = self._accelerating_step(self.setup.step, MAX_STEP_RATIO)
         if longest < self.setup.step:
             raise OutsideLimits(
                 f"at t = {self.time:.4g} s a body accelerates so fast that it moves by more than a cell in a step of "
                 f"{self.setup.step:.3g} s. Take a step of at most {0.8 * longest:.3g} s, or None."
             )
         return self.setup.step
+
+    def _refuse_long_step(self, dt: float, limit: float) -> None:
+        """Refuse a step in which water or a body moves by more than a cell.
+
+        Args:
+            dt: the step [s].
+            limit: longest step by the speeds [s].
+
+        Raises:
+            OutsideLimits: with the Courant number and the step that is allowed.
+        """
+        if dt > MAX_STEP_RATIO * limit:
+            raise OutsideLimits(
+                f"at t = {self.time:.4g} s a step of {dt:.3g} s has Courant number {dt / limit:.3g}; above 1 it "
+                f"explodes. Take a step of at most {0.8 * limit:.3g} s, or None."
+            )
 
     def _accelerating_step(self, dt: float, courant: float) -> float:
         """Return the longest step in which no body that accelerates moves by more than a part of a cell [s].
@@ -328,15 +368,18 @@ class Simulation(Fields):
         Raises:
             Diverged: the fields are not finite or far too fast; the record's fields are those of the last valid step.
             InvalidDesign: a body leaves the domain, is too fast for the grid, or its rates do not match its positions.
-            OutsideLimits: ``dt`` is not positive.
+            OutsideLimits: ``dt`` is not positive, or water or a body would move by more than a cell.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
         if not self._log.rows:
             self._reference = self.water.fastest()
             self._speed = max(self._speed, self._reference, self.water.imposed(self.time))
         dt = self.next_step() if dt is None else dt
-        if not (isfinite(dt) and dt > 0):
-            raise OutsideLimits(f"a step is to last {dt} s; give a positive time, or None to let the solver choose.")
+        if not (is_number(dt) and isfinite(dt) and dt > 0):
+            raise OutsideLimits(
+                f"a step is to last {show(dt)} s; give a positive time, or None to let the solver choose."
+            )
+        self._refuse_long_step(dt, self._limit(max(self._fastest, self._speed)))
         for consistency in self._consistency_checks:
             consistency.check_step(self.time, dt)
         offset = wall_offset(float(self.water.nu) * dt / self.setup.grid.cell)
@@ -348,8 +391,10 @@ class Simulation(Fields):
         self._frame_velocity_at(self.time + dt)
         self.frame[0] += dt * 0.5 * (old_frame[1] + self.frame[1])
         time = self.time + dt
-        poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
         moving = self.setup.follow is not None or not self._are_static
+        if moving or not self._is_placed:
+            self._poses = [self._in_frame(self.pose(b.name, time)) for b in self._bodies]
+        poses = self._poses
         has_new_places = moving or not self._is_placed or abs(offset - self.water.offset) > OFFSET_TOLERANCE
         if has_new_places:
             self.water.offset = offset
@@ -370,19 +415,24 @@ class Simulation(Fields):
                 ]
             )
         imposed_speed = self.water.imposed(time)
-        marker_speeds = [_fastest_marker(m) for m in self._outlines]  # a body may just start to move
-        self._speed = max([self._speed, length(stream), imposed_speed, *marker_speeds])
+        body_speed = self._body_speed()  # a body may just start to move
+        self._speed = max(self._speed, length(stream), imposed_speed, body_speed)
         push = tuple(-(self.frame[1] - old_frame[1]) / dt)
         limits = (self.setup.tolerance * self._speed, 10 * self.setup.tolerance * self._speed)
         self.water.step(dt, stream, tuple(map(float, push)), limits, time)
         self.time, self._last_step = time, dt
         drift = 0.5 * (old_frame[1] + self.frame[1])
         contents = self._log.region_contents
-        self._latest_step = _LatestStep(
-            dt, poses, push, drift, contents, max(marker_speeds, default=0.0), imposed_speed
-        )
+        self._latest_step = _LatestStep(dt, poses, push, drift, contents, body_speed, imposed_speed)
         self._note(self._latest_step, has_new_places=has_new_places)
         self._log.control(self.water, dt, push)
+
+    def _body_speed(self) -> float:
+        """Return the fastest speed of the bodies' surfaces in the frame of the grid [m/s]."""
+        if self._fastest_marker_speed is None or self._fastest_marker_speed[0] is not self._outlines:
+            speed = max(map(_fastest_marker, self._outlines), default=0.0)
+            self._fastest_marker_speed = self._outlines, speed
+        return self._fastest_marker_speed[1]
 
     def _contacts(self, dt: float) -> dict[str, np.ndarray]:
         """Return the contact force and torque on each body in the middle of the next step, by name [N/m, N].
@@ -588,8 +638,7 @@ class Simulation(Fields):
         ]
         self.clear_shape_cache()
         self._log.rows.pop()
-        body_speed = max(map(_fastest_marker, self._outlines), default=0.0)
-        self._latest_step = self._latest_step._replace(body_speed=body_speed)
+        self._latest_step = self._latest_step._replace(body_speed=self._body_speed())
         self._note(self._latest_step, has_new_places=True)
 
     def added_mass(self, name: str, modes: Sequence[Twists]) -> AddedMass:
@@ -614,14 +663,16 @@ class Simulation(Fields):
         Raises:
             UnknownName: there is no such body.
         """
-        names = [b.name for b in self._bodies]
-        if name not in names:
-            raise UnknownName("body", name, names or ("none",))
-        return names.index(name)
+        number = self._numbers.get(name)
+        if number is None:
+            raise UnknownName("body", name, list(self._numbers) or ("none",))
+        return number
 
     def clear_shape_cache(self) -> None:
-        """Clear the cached midlines of all bodies, because the functions behind them have changed."""
+        """Clear the cached poses and midlines of all bodies, because the functions behind them have changed."""
         for body in self._bodies:
+            if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
+                body.motion.clear()
             spine = getattr(body.shape, "spine", None)
             if isinstance(spine, CachedMidline):
                 spine.clear()
@@ -674,8 +725,8 @@ class Simulation(Fields):
         for name, swimmer in self.swimmers.items():
             swimmer.resume({key.removeprefix(f"{name}."): state[key] for key in state if key.startswith(f"{name}.")})
         self.clear_shape_cache()
-        poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
-        self.water.place(self._bodies, poses, self.time)
+        self._poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
+        self.water.place(self._bodies, self._poses, self.time)
         if self.water.b.shape == state["b"].shape:
             self.water.b[:] = state["b"]  # as it was after ``accelerate``
         self._is_placed = bool(self._log.rows)  # as in the continued run, which keeps its offset
@@ -709,15 +760,15 @@ class Simulation(Fields):
             Unwritable: the checkpoint cannot be written.
             OutsideLimits: ``until`` is not a time, or one that has passed.
         """
-        if not isfinite(end_time):
-            raise OutsideLimits(f"the run is to last until {end_time} s; give a finite time.")
+        if not (is_number(end_time) and isfinite(end_time)):
+            raise OutsideLimits(f"the run is to last until {show(end_time)} s; give a finite time.")
         self._refuse_past(end_time, "the run", "a new Simulation")
         path = None if checkpoint is None else Path(checkpoint)
         if path is not None and path.exists():
             store.load(self, path)
             self._refuse_past(end_time, f"the run of the checkpoint {path}", "another file")
         cells = sum(prod(layer.grid.cells) for layer in self.water.layers)
-        watchers = () if watch is None else (watch,) if callable(watch) else tuple(watch)
+        watchers = _watchers(watch)
         due = due_after(self.time, watch_interval)
         saver = store.Saver(path, checkpoint_every)
         with Bar(self.time, end_time, cells, show=progress) as bar:
@@ -764,8 +815,16 @@ class Simulation(Fields):
             margin: distance of the sides of the box from the bodies' window [m].
 
         Raises:
-            InvalidDesign: a mirror cuts a body, so that no box goes around it.
+            InvalidDesign: a mirror cuts a body, so that no box goes around it; there is no body; or the margin is not
+                a number of at least 0.
         """
+        if not self._bodies:
+            raise InvalidDesign("a control volume goes around bodies, and there is none; give a body.")
+        if not (is_number(margin) and isfinite(margin) and margin >= 0):
+            raise InvalidDesign(
+                f"the margin of the control volume is {show(margin)} m; give a distance of at least 0, so that the box "
+                f"is around the bodies."
+            )
         if not self._is_placed:
             poses = [self._in_frame(self.pose(b.name)) for b in self._bodies]
             self.water.place(self._bodies, poses, self.time)
@@ -831,6 +890,19 @@ class _LatestStep(NamedTuple):
     """Fastest speed of a body's surface in the frame of the grid [m/s]."""
     imposed_speed: float
     """Fastest speed that a side imposes at its end [m/s]."""
+
+
+def _watchers(watch: Watcher | Sequence[Watcher] | None) -> tuple[Watcher, ...]:
+    """Return the functions that are called during a run.
+
+    Raises:
+        InvalidDesign: one is no function.
+    """
+    watchers = () if watch is None else tuple(watch) if isinstance(watch, Sequence) else (watch,)
+    for watcher in watchers:
+        if not callable(watcher):
+            raise InvalidDesign(f"watch is {show(watch)}; give a function of the simulation, or several in a list.")
+    return watchers
 
 
 def _even_step(dt: float, remaining: float) -> float:

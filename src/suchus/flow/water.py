@@ -6,7 +6,6 @@ Inside, lengths are in cells: a time step is ``dt / cell``, a viscosity ``viscos
 density [m^2/s^2].
 """
 
-from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,7 +29,7 @@ from suchus.flow.momentum import (
     sums_of,
 )
 from suchus.flow.pose import Pose
-from suchus.flow.project import correct, fastest, mean_residual, residual
+from suchus.flow.project import correct, fastest, residual, side_mean
 from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.shape import Shape
 from suchus.flow.sides import Sides
@@ -104,7 +103,7 @@ class Fluid:
         window: padded cell indices around the bodies; it includes a cell beyond a mirror that cuts one.
         mirror_cuts: for each body, which mirrors cut it; see ``body.cuts``.
         rows: for each body the rows of its parts in arrays of sums; one for a body that is not divided.
-        owners: for each component, the row of the part that is nearest to the points of the window.
+        owners: for each component, the row of the part that is nearest to the points of the window, shape (axis, ...).
         immersion_sums: momentum and energy given to the water by the immersion in the last step, per row; see
             ``momentum.add_immersion_impulse``.
         internal_pressure_sums: integral of the pressure inside divided bodies in the last step, per row; see
@@ -136,6 +135,7 @@ class Fluid:
         self.grid, self.sides, self.dtype, self.integrator = grid, sides, dtype, integrator
         self._advance_all = advance_by(scheme)
         self.ndim, self.repeats = grid.ndim, sides.is_periodic(grid.ndim)
+        self._mirrors, self._solids = sides.has_mirror(grid.ndim), sides.is_solid(grid.ndim)
         self.inner = inner_strides(grid.cells)
         self.nu = dtype(viscosity / grid.cell)
         self.border = Border.for_grid(sides, grid, dtype)
@@ -154,7 +154,7 @@ class Fluid:
         self._x: np.ndarray = np.zeros(slabs, dtype)
         self._d: np.ndarray = np.zeros(slabs, dtype)
         self._q: np.ndarray = np.zeros(slabs, dtype)
-        self._layout, self._cell_count = poisson.levels(grid.cells), prod(grid.cells)
+        self._layout = poisson.levels(grid.cells)
         self._store = poisson.make_store(self._layout, dtype)
         parts = (multigrid.level(self._store, self._layout, self.inner, kind, 0) for kind in range(multigrid.FACES))
         faces = multigrid.faces_of(self._store, self._layout, self.inner, 0)
@@ -178,8 +178,7 @@ class Fluid:
         self._jointed = False
         self.widening: np.ndarray = np.zeros((0,) * self.ndim, dtype)
         self._widens = False
-        self.mean: list[np.ndarray] = [np.zeros((0,) * self.ndim, dtype)] * self.ndim
-        self.owners = [np.zeros((0,) * self.ndim, np.int8)] * self.ndim
+        self.mean: np.ndarray = np.zeros((self.ndim, *(0,) * self.ndim), dtype)
 
     @property
     def u(self) -> np.ndarray:
@@ -215,7 +214,7 @@ class Fluid:
     def _set_window(self, window: Window) -> None:
         """Set the window around the bodies and allocate its arrays.
 
-        These are kernel moments, body velocity, source and bare update.
+        These are kernel moments, body velocity, source, bare update and parts; and the coordinates of the points.
 
         Args:
             window: padded indices, first and end along each axis, the last axis first.
@@ -227,8 +226,20 @@ class Fluid:
         self.b: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self._raw: np.ndarray = np.zeros((self.ndim, *shape), self.dtype)
         self.source: np.ndarray = np.zeros(shape, self.dtype)
+        self.owners: np.ndarray = np.zeros((self.ndim, *shape), np.int8)
         self._flat_near_views.clear()
-        self._keep_flat(self.mu1, self.b, self._raw, self.source)
+        self._keep_flat(self.mu1, self.b, self._raw, self.source, self.owners)
+        ends = [(start, end + 1) for start, end in zip(window[-2::-2], window[::-2], strict=True)]
+        centres, faces = (
+            [axis_points(*axis_ends, d) for d, axis_ends in enumerate(ends)]
+            for axis_points in (self.grid.centres, self.grid.faces)
+        )
+        self._points = [[(faces if c == d else centres)[d] for d in range(self.ndim)] for c in range(self.ndim)]
+        self._first_centre = [float(points[0]) for points in centres]
+        self._beyond = [k for k, is_beyond in enumerate(reaches_beyond(window, self.grid)) if is_beyond]
+        self._low_sides = [
+            c for c, repeats in enumerate(self.repeats) if not repeats and window[2 * (self.ndim - 1 - c)] <= PAD
+        ]
 
     def _in_window(self, values: np.ndarray, window: Window) -> np.ndarray:
         """Return values of another window in the present one, shape (axis, ...), 0 outside the other window.
@@ -278,9 +289,8 @@ class Fluid:
 
     def _level_of(self, p: np.ndarray) -> float:
         """Return the mean of a field at the cells along the outermost ones of this grid."""
-        cells = p[(slice(PAD, -PAD),) * self.ndim]
-        sides = [cells[(slice(None),) * axis + (end,)] for axis in range(self.ndim) for end in (0, -1)]
-        return float(sum(side.sum(dtype=np.float64) for side in sides) / sum(side.size for side in sides))
+        mean: float = side_mean(self._flat(p), self.inner)
+        return mean
 
     def imposed(self, time: float) -> float:
         """Return the fastest speed that a side of the domain itself imposes at a time, a wall or an inflow [m/s]."""
@@ -322,12 +332,16 @@ class Fluid:
             InvalidDesign: a body reaches out of the domain.
         """
         old = self.window
-        mirrors, solids = self.sides.has_mirror(self.ndim), self.sides.is_solid(self.ndim)
+        mirrors, solids = self._mirrors, self._solids
         windows = [window_of(b, p, self.grid, time, mirrors, solids) for b, p in zip(bodies, poses, strict=True)]
         self.mirror_cuts, new = [cuts(window, self.grid, mirrors) for window in windows], unite(windows, self.ndim)
-        self._clear(old)
         old_velocity = self.b
-        self._set_window(new)
+        if new == old:  # every value in it is written anew
+            self.b = np.empty_like(old_velocity)
+            self._keep_flat(self.b)
+        else:
+            self._clear(old)
+            self._set_window(new)
         filled_windows = [w for w in (old, new) if w[1] > w[0]]
         self.rows = rows_of(bodies)
         self.immersion_sums = np.zeros((sum(map(len, self.rows)), sums_of(self.ndim)))
@@ -341,8 +355,8 @@ class Fluid:
             poisson.place_window(self._layout[:1], new)
         if new[1] > new[0]:
             self._measure(bodies, poses, time)
-            self.mean = list(0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b))
-            self._keep_flat(*self.mean, *self.owners)
+            self.mean = 0.5 * ((self._in_window(old_velocity, old) if new != old else old_velocity) + self.b)
+            self._keep_flat(self.mean)
             self._widening(bodies)
         if has_moved:
             poisson.place_window(self._layout, unite(filled_windows, self.ndim))
@@ -356,10 +370,11 @@ class Fluid:
 
     def _widening(self, bodies: list[AnyBody]) -> None:
         """Compute the source of the mean of the step's start and end; it is 0 for bodies that do not bend."""
-        self.widening = np.zeros_like(self.source)
-        self._widens = not all(body.shape.rigid for body in bodies)
+        was_wide, self._widens = self._widens, not all(body.shape.rigid for body in bodies)
+        if self._widens or was_wide or self.widening.shape != self.source.shape:
+            self.widening = np.zeros_like(self.source)
         if self._widens:
-            widening, mean, mu0 = (self._flat(a) for a in (self.widening, np.array(self.mean), self.mu0))
+            widening, mean, mu0 = (self._flat(a) for a in (self.widening, self.mean, self.mu0))
             fill_source(widening, mean, mu0, self._layout[0], self._near_layout, self.inner)
 
     def _clear(self, window: Window) -> None:
@@ -376,24 +391,22 @@ class Fluid:
             poses: their poses in the frame of the grid.
             time: time [s].
         """
-        h, grid, slices = self.grid.cell, self.grid, self._window_slices(self.window)
+        h, slices = self.grid.cell, self._window_slices(self.window)
         self.overlap = Overlap(0.0, (0, 0))
-        ends = [(s.start, s.stop) for s in reversed(slices)]
-        for c in range(self.ndim):
-            points = [(grid.faces if c == d else grid.centres)(*ends[d], d) for d in range(self.ndim)]
+        for c, points in enumerate(self._points):
             f, self.owners[c], overlap = measure_all(bodies, poses, points, time, h)
             self.overlap = max(self.overlap, overlap)
-            distance, thickness = f.distance / h - self.offset, f.thickness / h + 2 * self.offset
-            mu0: np.ndarray = np.empty(distance.size, self.dtype)
-            normal = np.empty((self.ndim, distance.size))
+            mu0: np.ndarray = np.empty(f.distance.size, self.dtype)
+            normal = np.empty((self.ndim, mu0.size))
             for d, component in enumerate(f.normal):
                 normal[d] = component.ravel()
-            fill(distance.ravel(), normal, thickness.ravel(), mu0, self.mu1[c].reshape(self.ndim, -1))
-            self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(distance.shape)
+            fill(
+                f.distance.ravel(), normal, f.thickness.ravel(), h, self.offset, mu0, self.mu1[c].reshape(self.ndim, -1)
+            )  # fmt: skip
+            self.mu0[c][slices] = self.passage[c][slices] = mu0.reshape(f.distance.shape)
             self.b[c] = f.velocity[c]
-        first_centre = [grid.centres(*ends[d], d)[0] for d in range(self.ndim)]
         for body, pose in zip(bodies, poses, strict=True):
-            self._close(body.shape, pose, time, first_centre)
+            self._close(body.shape, pose, time, self._first_centre)
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
         fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
@@ -421,8 +434,8 @@ class Fluid:
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
-        fastest(self._flat(self.velocity), self.inner, self._sums)
-        return float(self._sums[PAD:-PAD, 0].max())
+        speed: float = fastest(self._flat(self.velocity), self.inner, self._sums)
+        return speed
 
     def step(
         self, dt: float, stream: tuple[float, ...], push: tuple[float, ...], limits: tuple[float, float],
@@ -567,11 +580,10 @@ class Fluid:
             self._clear_raw_on_sides()
             self._extend_raw()
             b, mu0, mu1, passage = flat(self.b), flat(self.mu0), flat(self.mu1), flat(self.passage)
-            for c in range(self.ndim):
-                immerse(
-                    result[c], blend[c], raw[c], b[c], mu0[c], passage[c], mu1[c], p, c, self._near_layout, self.inner,
-                    stage.dt, stage.blend_fraction,
-                )  # fmt: skip
+            immerse(
+                result, blend, raw, b, mu0, passage, mu1, p, self._near_layout, self.inner, stage.dt,
+                stage.blend_fraction,
+            )  # fmt: skip
         self.border.fill(stage.result)
 
     def _clear_raw_on_sides(self) -> None:
@@ -579,10 +591,9 @@ class Fluid:
 
         The kernel computes no flux through these faces and leaves undefined numbers there.
         """
-        for c, repeats in enumerate(self.repeats):
+        for c in self._low_sides:
             axis = self.ndim - 1 - c
-            if not repeats and self.window[2 * axis] <= PAD:
-                np.moveaxis(self._raw[c], axis, 0)[PAD - self.window[2 * axis]] = 0
+            np.moveaxis(self._raw[c], axis, 0)[PAD - self.window[2 * axis]] = 0
 
     def _extend_raw(self) -> None:
         """Fill the bare update beyond the mirrors that cut bodies, and beyond the walls beside bodies.
@@ -590,9 +601,7 @@ class Fluid:
         Beyond a mirror and a wall without friction it is the mirror image. Beyond a wall with friction the velocity
         along it is that whose mean with the image is the wall's.
         """
-        for k, is_beyond in enumerate(reaches_beyond(self.window, self.grid)):
-            if not is_beyond:
-                continue
+        for k in self._beyond:
             axis, is_low = k // 2, k % 2 == 0
             start = self.window[2 * (self.ndim - 1 - axis)]
             wall_velocity = self.border.wall_velocity(axis, is_low=is_low)
@@ -621,11 +630,9 @@ class Fluid:
         result, blend, raw, passage, mu1 = (
             flat(stage.result), flat(stage.blend), flat(self._raw), flat(self.passage), flat(self.mu1)
         )  # fmt: skip
-        for c, mean in enumerate(self.mean):
-            add_immersion_impulse(
-                sums, result[c], blend[c], raw[c], flat(mean), passage[c], mu1[c], p, flat(self.owners[c]), c,
-                near_layout, inner, dt, keep,
-            )  # fmt: skip
+        add_immersion_impulse(
+            sums, result, blend, raw, flat(self.mean), passage, mu1, p, flat(self.owners), near_layout, inner, dt, keep
+        )  # fmt: skip
         self.subtract_dilatation_work(sums, self.p, dt)
         if self._jointed:
             sums = sums + self.joint_pressure_sums(self.p, dt)
@@ -643,7 +650,7 @@ class Fluid:
         """
         if not self._widens:
             return
-        flat = self._flat(p), self._flat(self.widening), self._flat(np.stack(self.owners))
+        flat = self._flat(p), self._flat(self.widening), self._flat(self.owners)
         dilatation_work(sums, *flat, self._near_layout, self.inner, weight)
 
     def joint_pressure_sums(self, p: np.ndarray, weight: float) -> np.ndarray:
@@ -658,8 +665,7 @@ class Fluid:
         """
         sums = np.zeros_like(self.immersion_sums)
         if self._jointed and self.window[1] > self.window[0]:
-            owners = np.array([self._flat(owner) for owner in self.owners])
-            flat = self._flat(p), self._flat(self.mu0), owners
+            flat = self._flat(p), self._flat(self.mu0), self._flat(self.owners)
             subtract_joint_pressure(sums, *flat, self._layout[0], self._near_layout, self.inner, weight)
         return sums
 
@@ -675,7 +681,7 @@ class Fluid:
         """
         sums = np.zeros_like(self.internal_pressure_sums)
         if self.window[1] > self.window[0]:
-            flat = self._flat(p), self._flat(self.mu0), self._flat(np.stack(self.owners))
+            flat = self._flat(p), self._flat(self.mu0), self._flat(self.owners)
             add_internal_pressure(sums, *flat, self._layout[0], self._near_layout, self.inner, weight)
         return sums
 
@@ -687,9 +693,8 @@ class Fluid:
         sums = np.zeros((len(self.immersion_sums), contents_of(self.ndim)))
         if self.window[1] > self.window[0]:
             b, mu0 = self._flat(self.b), self._flat(self.mu0)
-            for c, owner in enumerate(self.owners):
-                add_contents(sums, b[c], mu0[c], self._flat(owner), c, self._layout[0], self._near_layout, self.inner)
-            for k, is_cut in enumerate(cuts(self.window, self.grid, self.sides.has_mirror(self.ndim))):
+            add_contents(sums, b, mu0, self._flat(self.owners), self._layout[0], self._near_layout, self.inner)
+            for k, is_cut in enumerate(cuts(self.window, self.grid, self._mirrors)):
                 if is_cut:
                     self._add_half_faces(sums, k // 2, is_low=k % 2 == 0)
         return sums
@@ -730,20 +735,18 @@ class Fluid:
         """
         r, level_layout, near_layout, inner = self._views[multigrid.B], self._layout[0], self._near_layout, self.inner
         u, source = self._flat(velocity), self._flat(self.source)
-        mean = self.dtype(mean_residual(u, source, level_layout, near_layout, inner))
-        residual(
-            r, u, source, self._views[multigrid.DINV], level_layout, near_layout, mean, inner, self.repeats, self._sums
+        mean, maximum = residual(
+            r, u, source, self._views[multigrid.DINV], level_layout, near_layout, inner, self.repeats, self._sums
         )
-        sums = self._sums[PAD:-PAD]
-        solve = poisson.Solve(0, float(sums[:, 0].sum()) / self._cell_count, float(sums[:, 1].max()))
+        solve = poisson.Solve(0, mean, maximum)
         if (
             solve.mean_divergence > MIN_SOLVED_RESIDUAL * limits[0]
             or solve.max_divergence > MIN_SOLVED_RESIDUAL * limits[1]
         ):
             solve, (a, b) = self._solve(limits)
             d, x, gain = self._d, self._views[multigrid.X], self.dtype(1 / dt)
-            correct(u, self._flat(self.p), d, x, a, b, self._flat(self.passage), level_layout, inner, gain)
-            self._seal(self.p)
+            p, passage = self._flat(self.p), self._flat(self.passage)
+            correct(u, p, d, x, a, b, passage, level_layout, inner, self.repeats, gain)
             self.border.fill(velocity)
         self.solves.append(solve)
 
@@ -835,8 +838,7 @@ class Fluid:
         self.velocity[:, *self.window_slices] += velocity_change.astype(self.dtype)
         velocity, p, passage = (self._flat(a) for a in (self.velocity, self.p, self.passage))
         gain = self.dtype(self.grid.cell / dt)
-        correct(velocity, p, solution, z, unity, zero, passage, self._layout[0], self.inner, gain)
-        self._seal(self.p)
+        correct(velocity, p, solution, z, unity, zero, passage, self._layout[0], self.inner, self.repeats, gain)
 
     def along_sides(self, x: np.ndarray) -> list[np.ndarray]:
         """Return the values of the cells along each side: left, right, bottom, top (low and high)."""

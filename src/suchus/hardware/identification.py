@@ -29,8 +29,8 @@ from suchus.core.errors import IncompatibleRecord
 from suchus.hardware.calibrate import FitEstimate
 from suchus.hardware.log import foot_centers, hinge_angles
 from suchus.hardware.protocols import servo_table
-from suchus.robot.design import Robot, layout
-from suchus.robot.motion import START
+from suchus.robot.design import Robot, layout, servo_ranges
+from suchus.robot.motion import START, Curve, Gait, servo_parts
 from suchus.robot.motors import motors
 from suchus.sim.model.inverse import held_torques
 from suchus.visual.skin import poses
@@ -83,6 +83,12 @@ class ServoIdentification:
     """Root mean square of the current that the motion does not explain, over that of the current [-]."""
 
 
+_WAVE_PERIOD = 10.0  # [s]; the wave that servos are identified from repeats itself
+_SLOW_CYCLES, _QUICK_CYCLES = (5, 6, 7, 8, 9), (12, 14, 16, 18, 20)  # in that period, of its two swings [-]
+_SLOW_SWING, _QUICK_SWING = 0.25, 0.08  # amplitudes [rad]
+_MAX_SPEED_FRACTION = 0.5  # of a servo's speed, which the wave uses [-]
+_GOLDEN = 0.618034  # fractional parts of its multiples spread evenly over 0 to 1 [-]
+
 QUANTITIES: Mapping[str, str] = {
     "torque_constant": "Nm_per_A", "armature": "kgm2", "friction": "Nm", "damping": "Nms_per_rad", "delay": "s",
     "play": "rad",
@@ -112,6 +118,33 @@ class _LoggedMotion:
     """Torque that would move the bodies of the robot along the goals [N m]."""
     is_known: np.ndarray
     """Whether all of it was measured."""
+
+
+def waving_gait(robot: Robot, period: float = _WAVE_PERIOD) -> Gait:
+    """Return a movement in which every servo swings with two frequencies, from which ``identify_servos`` finds it.
+
+    Each servo swings by up to 0.33 rad about the nearest angle to zero that leaves room for it, with frequencies and
+    phases of its own. Swings are smaller where the range or half of the servo's speed allows less. A crank, which
+    turns all round, swings about zero.
+
+    Args:
+        robot: the robot that is held by its trunk.
+        period: time after which the movement repeats itself [s].
+    """
+    parts, curves = servo_parts(robot), []
+    clock = np.arange(4 * max(_QUICK_CYCLES)) / (4 * max(_QUICK_CYCLES))
+    for i, (name, (low, high)) in enumerate(zip(layout(robot).servos, servo_ranges(robot), strict=True)):
+        slow, quick = _SLOW_CYCLES[i % 5], _QUICK_CYCLES[(2 * i + i // 5) % 5]
+        swing = _SLOW_SWING * np.sin(2 * pi * (slow * clock + i * _GOLDEN))
+        swing += _QUICK_SWING * np.sin(2 * pi * (quick * clock + i * _GOLDEN**2))
+        max_speed = 2 * pi / period * (slow * _SLOW_SWING + quick * _QUICK_SWING)
+        reach = _SLOW_SWING + _QUICK_SWING
+        scale = min(1.0, _MAX_SPEED_FRACTION * robot.servo(name).speed / max_speed, 0.5 * (high - low) / reach)
+        center = float(np.clip(0.0, low + scale * reach, high - scale * reach))
+        angles = tuple(float(round(angle, 6)) for angle in center + scale * swing)
+        curves.append(Curve(servo=name, part=parts[name], angles=angles))
+    limb_count = len(layout(robot).limbs)
+    return Gait(name=f"{robot.name}_wave", period=period, limb_phases=(0.0,) * limb_count, curves=tuple(curves))
 
 
 def identify_servos(

@@ -129,7 +129,7 @@ COMMANDS = (
     Subcommand(
         "replay",
         "RECORD.nc [--out FILE.html]",
-        "make a page of a stored run that plays offline",
+        "make a page of a stored run that plays offline, or a film",
         "suchus.apps.cli.replay:make_replay",
         first_word="file",
         shelf_options=("robot",),
@@ -216,6 +216,7 @@ COMMANDS = (
         "drive a robot of servos",
         "suchus.apps.cli.drive:run",
         first_word="gait",
+        other_words=("swim",),
         shelf_options=("robot", "gait"),
     ),
     Subcommand(

@@ -31,6 +31,13 @@ QUICK_FLAG = Annotated[
     tyro.conf.FlagCreatePairsOff,
     tyro.conf.arg(help="Start from the quick form, small enough for a test."),
 ]
+FOR_VERDICTS = "--for-verdicts"
+"""Option of ``suchus run`` for what ``suchus reproduce`` runs."""
+FOR_VERDICTS_FLAG = Annotated[
+    bool,
+    tyro.conf.FlagCreatePairsOff,
+    tyro.conf.arg(help="Leave out what no verdict needs, such as most points of maps."),
+]
 RESULTS_FOLDER_OPTION = Annotated[
     Path, tyro.conf.arg(help="Folder for results; each experiment gets a folder of its own in it.")
 ]
@@ -77,7 +84,7 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
         SystemExit: help was asked for, and printed.
     """
     is_quick = "--quick" in words
-    start = experiment.quick() if is_quick else experiment
+    start = experiment.quick() if is_quick else experiment.for_verdicts() if FOR_VERDICTS in words else experiment
     words = _policy_words(start, name, words)
     robot = _robot(words)
     if robot is not None:
@@ -87,13 +94,14 @@ def choose(experiment: Experiment, name: str, words: Sequence[str]) -> RunReques
         "Options",
         [
             ("quick", QUICK_FLAG, field(default=False)),
+            ("for_verdicts", FOR_VERDICTS_FLAG, field(default=False)),
             ("out", RESULTS_FOLDER_OPTION, field(default=Path("out"))),
             ("csv", CSV, field(default=False)),
             ("json", JSON, field(default=False)),
             ("experiment", Annotated[type(start), tyro.conf.arg(name="")], field(default=start)),
         ],
     )
-    names = ["quick", "out", "csv", "json", *(f.name for f in fields(start))]  # type: ignore[arg-type]
+    names = ["quick", "for_verdicts", "out", "csv", "json", *(f.name for f in fields(start))]  # type: ignore[arg-type]
     description = f"{start.title}\n\nAnswers: {start.shows}"
     settings = parse(options, prog, words, description, names, robot=getattr(start, "robot", None))
     return RunRequest(

@@ -1,4 +1,4 @@
-"""``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline."""
+"""``suchus replay RECORD.nc``: a stored run as one HTML file that plays offline, or as a film."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,13 +10,15 @@ import xarray as xr
 
 from suchus.apps.cli.entry import BadCommand
 from suchus.apps.cli.options import parse
+from suchus.apps.cli.terminal import working
 from suchus.apps.cli.word_checks import check_page
 from suchus.core import files as record
-from suchus.core.files import check_file, check_replaceable
+from suchus.core.files import check_file, check_replaceable, write
 from suchus.hardware import fix_in_place
 from suchus.robot.design import Robot
 from suchus.robot.robots import ROBOTS
 from suchus.visual.replay import replay, save
+from suchus.visual.replay.video import ENDINGS, check_encoder, video
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,19 +37,23 @@ class ReplayOptions:
     """Heading of the page; by default robot and gait."""
     out: Path | None = None
     """The page; by default the record's name with .html instead of .nc."""
+    video: Path | None = None
+    """A film of the run instead of the page: FILE.mp4, FILE.webm or FILE.webp; it needs no graphics card."""
 
 
 def make_replay(words: Sequence[str]) -> int:
-    """Write the page, say where it is, and return 0.
+    """Write the page or the film, say where it is, and return 0.
 
     Raises:
         SuchusError: the words or the record make no sense, or the place cannot be written to.
     """
-    description = "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed."
+    description = (
+        "Turn a stored run on land into one HTML file: three-dimensional, plays offline, can be mailed. With --video "
+        "into a film."
+    )
     options = parse(ReplayOptions, "suchus replay", words, description)
     check_file(options.file)
-    output = options.out or options.file.with_suffix(".html")
-    check_page(output)
+    output = _output(options)
     check_replaceable(output)
     stored = record.load(options.file)
     main_run = _select_run(stored, options.run, "--run")
@@ -56,9 +62,38 @@ def make_replay(words: Sequence[str]) -> int:
     robot = ROBOTS[robot_name] if options.robot is None else options.robot
     main_run = fix_in_place(main_run, robot)
     labels = [_label(run).replace("_", " ") for run in (main_run, ghost) if run is not None]
-    save(replay(main_run, robot, ghost=ghost, labels=labels, title=options.title), output)
+    if options.video is not None:
+        with working() as bars:
+            title, progress = options.title or labels[0], bars.reporter("replay")
+            film = video(main_run, robot, ending=output.suffix.lower(), title=title, progress=progress)
+        write(output, film)
+    else:
+        save(replay(main_run, robot, ghost=ghost, labels=labels, title=options.title), output)
     print(f"{robot.name}, {' and '.join(labels)}: {output}, {output.stat().st_size / 1e6:.1f} MB")
     return 0
+
+
+def _output(options: ReplayOptions) -> Path:
+    """Return where the page or the film goes.
+
+    Raises:
+        BadCommand: the name ends otherwise, or both a film and what a page alone shows are asked for.
+        NoVideo: the library that encodes such a film is not installed.
+    """
+    if options.video is None:
+        output = options.out or options.file.with_suffix(".html")
+        check_page(output)
+        return output
+    for option, value in (("--ghost", options.ghost), ("--out", options.out)):
+        if value is not None:
+            raise BadCommand(
+                f"{option} is for the page, and --video writes a film instead of it; leave one of them out."
+            )
+    ending = options.video.suffix.lower()
+    if ending not in ENDINGS:
+        raise BadCommand(f"the film would be {options.video}; say --video FILE{', FILE'.join(ENDINGS)}.")
+    check_encoder(ending)
+    return options.video
 
 
 def _select_run(stored: xr.Dataset, name: str | None, option: str) -> xr.Dataset:

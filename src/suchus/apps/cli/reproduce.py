@@ -13,7 +13,7 @@ import tyro
 import suchus
 import suchus.experiments.catalog
 from suchus.apps.cli.entry import BadCommand
-from suchus.apps.cli.options import QUICK_FLAG, RESULTS_FOLDER_OPTION, parse
+from suchus.apps.cli.options import FOR_VERDICTS, QUICK_FLAG, RESULTS_FOLDER_OPTION, parse
 from suchus.apps.cli.run import perform
 from suchus.apps.cli.terminal import Bars, working
 from suchus.apps.report import Failure, Result, check_place, has_all_files, is_unchanged, load_result, write_page
@@ -37,6 +37,8 @@ class ExperimentTask:
     """The folder for results."""
     quick: bool
     """Whether its quick form is asked for, whatever it is."""
+    whole: bool = False
+    """Whether what no verdict needs is asked for too."""
     replace: bool = False
     """Whether what a user wrote or changed may be replaced."""
 
@@ -44,12 +46,17 @@ class ExperimentTask:
     def experiment(self) -> Experiment:
         """The question in the form that is asked for."""
         experiment = EXPERIMENTS[self.name]
-        return experiment.quick() if self.quick else experiment
+        if self.quick:
+            return experiment.quick()
+        return experiment if self.whole else experiment.for_verdicts()
 
     @property
     def command(self) -> str:
         """Command that makes the same result again."""
-        return f"suchus run {self.name}{' --quick' * self.quick}"
+        if self.quick:
+            return f"suchus run {self.name} --quick"
+        is_whole = self.experiment == EXPERIMENTS[self.name]
+        return f"suchus run {self.name}{'' if is_whole else f' {FOR_VERDICTS}'}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,9 +147,7 @@ _FIRST_EXPERIMENTS = (
     "joint_faults",
     "bipedal_reach",
     "terrain",
-    "turning",
     "swim_free",
-    "sensitivity",
 )
 """Experiments that are started first: what most readers ask, so that its answer is there within a minute, and then the
 slowest, so that no process idles at the end."""
@@ -154,6 +159,13 @@ class ReproduceOptions:
 
     out: RESULTS_FOLDER_OPTION = Path("out")
     quick: QUICK_FLAG = False
+    all: Annotated[
+        bool,
+        tyro.conf.FlagCreatePairsOff,
+        tyro.conf.arg(
+            help="Run every experiment, and each in full. Otherwise what no verdict on the article needs is left out.",
+        ),
+    ] = False
     jobs: Annotated[
         int | None,
         tyro.conf.arg(help=f"Experiments at a time; by default one for each core, {_MAX_DEFAULT_JOBS} at most."),
@@ -168,18 +180,21 @@ class ReproduceOptions:
 def reproduce(words: Sequence[str]) -> int:
     """Run every experiment of the article, write the page, print its path; return 1 if an experiment failed, else 0.
 
+    Without ``--all`` what no verdict needs is left out, and the page and the error stream say what that is.
+
     Started again it goes on where it stopped: what is there of the same settings, code and versions is kept.
 
     Raises:
         SuchusError: the words make no sense, or the results cannot be saved.
     """
-    description = "Run every experiment and write one page with all results, DIR/report.html."
+    description = "Run what the verdicts on the article need and write one page with all results, DIR/report.html."
     options = parse(ReproduceOptions, "suchus reproduce", words, description)
     sound = dict(EXPERIMENTS.items())  # broken experiments are attempted too, and their errors are reported
+    left_out = [] if options.all else [name for name in sound if not sound[name].reproduces]
     tasks = [
-        ExperimentTask(name=name, out=options.out, quick=options.quick, replace=asked_to_replace())
+        ExperimentTask(name=name, out=options.out, quick=options.quick, whole=options.all, replace=asked_to_replace())
         for name in EXPERIMENTS
-        if name not in sound or sound[name].reproduces
+        if name not in left_out
     ]
     if not tasks:
         raise BadCommand("there is no experiment in the catalog.")
@@ -194,7 +209,11 @@ def reproduce(words: Sequence[str]) -> int:
         outcomes = [reproduced.result for reproduced in _run_tasks(tasks, bars, jobs=jobs, anew=options.anew)]
         results = [outcome for outcome in outcomes if isinstance(outcome, Result)]
         failures = [outcome for outcome in outcomes if isinstance(outcome, Failure)]
-        page = write_page(results, failures, options.out / REPORT)
+        if left_out:
+            bars.say(
+                f"not run, since they judge no claim of the article: {', '.join(left_out)}; suchus reproduce --all does"
+            )
+        page = write_page(results, failures, options.out / REPORT, left_out=left_out)
     print(page)
     return 1 if failures else 0
 

@@ -217,7 +217,7 @@ def _help() -> str:
     width = max((len(name) for name in shelf), default=0)
     return "\n".join(
         (
-            "usage: suchus run NAME [--quick] [--out DIR] [--csv] [--json] [--FIELD VALUE ...]",
+            "usage: suchus run NAME [--quick] [--for-verdicts] [--out DIR] [--csv] [--json] [--FIELD VALUE ...]",
             "",
             "Run one experiment. Its numbers, verdicts, figures and record go into DIR/NAME.",
             "",

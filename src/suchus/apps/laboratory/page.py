@@ -24,7 +24,8 @@ from suchus.robot.gaits import control_group
 from suchus.robot.motion import Gait, check_limits
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.afloat import floats
-from suchus.visual.replay.page import embed_json, render_template
+from suchus.visual.pages import embed_json
+from suchus.visual.replay.page import render_template
 from suchus.visual.skin import skin
 from suchus.visual.skin.ankles import ANKLES, FLAT_FOOT_HEIGHTS
 from suchus.visual.skin.ankles import REACH as ANKLE_REACH
@@ -110,6 +111,7 @@ def laboratory_page(
         robot,
         ghost=first.isel(run=1),
         labels=labels,
+        is_live=True,
         title=f"{robot.name}: the laboratory in one page",
         caption=REFERENCES[reference].caption,
         question=REFERENCES[reference].question,
@@ -120,7 +122,6 @@ def laboratory_page(
         engine_script=Markup(_inline_script(engine.script)),
         engine_binary=Markup(b64encode(engine.binary).decode("ascii")),
         program=Markup(program()),
-        panel_style=Markup(_source("laboratory.css")),
         licence=licence_text(),
         command=command,
         command_use=command_use,

@@ -3,9 +3,9 @@
 from suchus.apps.report.comparison import Comparison, compare, render_comparison, write_comparison
 from suchus.apps.report.outcome_page import PAGE, answer, answer_rows, render_outcome_page, write_outcome_page
 from suchus.apps.report.page import render_page, write_page
-from suchus.apps.report.rendering import number, quantity
 from suchus.apps.report.result import OUTCOME, Failure, Picture, Result, has_all_files, is_unchanged, load_result
 from suchus.apps.report.saving import check_place, save_outcome
+from suchus.visual.pages import number, quantity
 
 __all__ = [
     "OUTCOME",

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from suchus.apps.report.rendering import number, quantity
 from suchus.apps.report.result import Result
 from suchus.article.paper import CLAIMS, CRAWL_END, CRAWL_START
 from suchus.article.paper.animals import ANIMALS, Animal
 from suchus.robot.design import LEGS, Robot, behind_hips, lacking
+from suchus.visual.pages import number, quantity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

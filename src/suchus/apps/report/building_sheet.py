@@ -3,10 +3,9 @@
 import csv
 import io
 from collections.abc import Sequence
-from math import degrees, isfinite
+from math import isfinite
 from pathlib import Path
 
-from suchus.apps.report.rendering import embedded, render
 from suchus.core.files import write
 from suchus.hardware.commands import Commands, trajectory_text
 from suchus.hardware.outlines import plates_dxf, stl, top_dxf
@@ -15,6 +14,7 @@ from suchus.hardware.ros import controllers, note, ros_urdf, unfit_reason
 from suchus.robot.design import Robot
 from suchus.robot.motion import Gait
 from suchus.visual import figures
+from suchus.visual.pages import embedded, render
 
 PAGE = "index.html"
 
@@ -45,7 +45,7 @@ def write_parts(sheet: Sheet, folder: Path, *, gait: Gait, samples: Commands, ou
         _write_ros(sheet.robot, samples, folder / "ros2")
     svg, png = figures.save(figures.dimension_drawing(sheet.robot), folder, "dimensions")
     picture = {"source": embedded(svg, png), "caption": f"{sheet.robot.name}, its lengths in millimetres."}
-    write(folder / PAGE, render("building_sheet.html", folder, _content(sheet, gait, picture, outlines), deg=degrees))
+    write(folder / PAGE, render("building_sheet.html", folder, **_content(sheet, gait, picture, outlines)))
 
 
 def _write_ros(robot: Robot, samples: Commands, folder: Path) -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from suchus.apps.report.outcome_page import answer
-from suchus.apps.report.rendering import render
 from suchus.apps.report.result import OUTCOME, MediaFile, Picture, Result, is_unchanged
 from suchus.core.errors import IncompatibleRecord
 from suchus.core.files import write
+from suchus.visual.pages import render
 
 _MAX_SETTING_LENGTH = 80
 """Letters of a setting that the page shows [-]."""
@@ -182,7 +182,7 @@ def render_comparison(comparison: Comparison, page_folder: str | Path) -> str:
         "pictures": _pairs({p.name: p for p in a.pictures}, {p.name: p for p in b.pictures}),
         "replays": _pairs({r.file.name: r for r in a.replays}, {r.file.name: r for r in b.replays}),
     }
-    return render("compare.html", page_folder, content)
+    return render("compare.html", page_folder, **content)
 
 
 def _pairs(

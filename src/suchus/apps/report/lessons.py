@@ -6,6 +6,7 @@ What is right follows from the runs: every number on a page is measured when the
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from suchus.apps.laboratory.engine import NoEngine, read_engine
 from suchus.apps.laboratory.link import constant_level, page_settings
 from suchus.apps.laboratory.page import laboratory_page
 from suchus.apps.report.qr_code import qr_picture
-from suchus.core.files import versions, write
+from suchus.core.files import write
 from suchus.core.progress import Progress, silent, staged
 from suchus.robot.control import Swimming
 from suchus.robot.design.ground import Ground
@@ -21,7 +22,8 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, failing_joints, joint_failure, simulate
-from suchus.visual.replay.page import embed_json, environment, render_template
+from suchus.visual.pages import embed_json, render
+from suchus.visual.replay.page import render_template
 
 _TIMESTEP, _SAMPLE_INTERVAL = (
     0.005,
@@ -82,14 +84,13 @@ def write_lessons(
         Unwritable: the place cannot be written to.
     """
     selection = selection or lessons()
-    templates, version = environment(), versions()["suchus"]
     laboratories = _laboratory_lessons(selection)
     links = [(f"{name}.html", f"{lesson.runs[0].robot.name}") for name, lesson in laboratories.items()]
     codes = {lesson.name: qr_picture(f"{address}{lesson.name}.html" if address else "") for lesson in selection}
-    shared = {"lessons": selection, "address": address, "code": qr_picture(address), "version": version}
+    shared: dict[str, Any] = {"lessons": selection, "address": address, "code": qr_picture(address)}
     pages = {
-        "index": templates.get_template("lessons.html").render(shared, laboratories=links),
-        "sheet": templates.get_template("lesson_sheet.html").render(shared, codes=codes),
+        "index": render("lessons.html", title="Lessons of ten minutes", laboratories=links, **shared),
+        "sheet": render("lesson_sheet.html", title="Lessons of ten minutes: the sheet", codes=codes, **shared),
     }
     for i, (lesson, following) in enumerate(zip(selection, [*selection[1:], None], strict=True)):
         page_progress = staged(progress, lesson.name, i / len(selection), (i + 1) / len(selection))

@@ -12,13 +12,13 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
-from suchus.apps.report.rendering import number, quantity, render, tied
 from suchus.apps.report.result import Result, load_result
 from suchus.article.paper import AUTHORS, TITLE
 from suchus.core.errors import UnreadableFile
 from suchus.core.files import read_text, write
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.experiment import Measure
+from suchus.visual.pages import number, origin_text, quantity, render
 
 PAGE = "index.html"
 """Name of the page in the folder of an outcome."""
@@ -35,7 +35,7 @@ MARKS = {
 }
 """Sign of each verdict, for those who do not see its colour."""
 ANSWER_SENTENCES = 2
-"""Sentences of an explanation that are the answer, beside the first figure; the others stand below the figures [-]."""
+"""Sentences of an explanation that are the answer, beside the hero; the others are folded below the figures [-]."""
 ARTICLE_ROBOTS = ("", "caiman", "floating_caiman")
 """Robots of the article, and none: pages of other robots name no part of the article."""
 DIGEST_LENGTH = 16
@@ -81,6 +81,7 @@ def render_outcome_page(result: Result) -> str:
         "on_shelf": outcome["experiment"] in EXPERIMENTS,
         "lead": answer(outcome["decides"]),
         "more": sentences[ANSWER_SENTENCES:],
+        "is_reduced": is_reduced(result),
         "robot": robot,
         "is_article_robot": robot in ARTICLE_ROBOTS,
         "citation": citation(outcome),
@@ -89,11 +90,18 @@ def render_outcome_page(result: Result) -> str:
         "carried": () if outcome.get("too_short") else answer_rows(outcome.get("answers", ()), measures),
         "differs": outcome.get("differs"),
         "replay": read_text(first_replay, 2 * _HEAVY) if first_replay is not None and is_embedded else "",
+        "pictures": result.pictures[0 if is_embedded else 1 :],
         "beside": [*result.replays[1 if is_embedded else 0 :], *result.films],
+        "origin": origin_text(*_origin(outcome)),
         "data": [_table("numbers.csv", _numbers(measures)), *_data(result)],
         "marks": MARKS,
     }
-    return render("outcome.html", result.folder, content, tied=tied)
+    return render("outcome.html", result.folder, **content)
+
+
+def is_reduced(result: Result) -> bool:
+    """Return whether what no verdict needs was left out of a run."""
+    return "--for-verdicts" in result.outcome.get("command", "").split()
 
 
 def verdict_rows(result: Result) -> Iterator[dict[str, Any]]:
@@ -123,27 +131,28 @@ def citation(outcome: Mapping[str, Any]) -> str:
 
     The first has the version, the commit where suchus ran from a checkout, and the digests of code and settings.
     """
-    made_by, robot = outcome["provenance"], _setting_name(outcome, "robot")
-    versions = made_by.get("versions") or {}
-    origin = {
-        "commit": made_by.get("commit"),
-        "code": made_by.get("code"),
-        "settings": made_by["config_hash"][:DIGEST_LENGTH],
-    }
+    robot, (version, commit, digests) = _setting_name(outcome, "robot"), _origin(outcome)
     note = "; ".join(
         [f"Experiment {outcome['experiment']}" + f", robot {robot}" * bool(robot)]
-        + [f"{name} {value}" for name, value in origin.items() if value]
+        + [f"{name} {value}" for name, value in ({"commit": commit} | digests).items() if value]
     )
     fields = {
         "author": "{The suchus developers}",
         "title": f"suchus: {outcome['title']}",
-        "version": versions.get("suchus", ""),
+        "version": version,
         "note": note,
     }
     entries = [_entry("software", f"suchus_{outcome['experiment']}", fields)]
     if robot in ARTICLE_ROBOTS:
         entries.append(_entry("article", "crocodile_robot", {"author": " and ".join(AUTHORS), "title": TITLE}))
     return "\n\n".join(entries)
+
+
+def _origin(outcome: Mapping[str, Any]) -> tuple[str, str, dict[str, str]]:
+    """Return version and commit of the software that made an outcome, empty if unknown, and digests by name."""
+    made_by = outcome["provenance"]
+    digests = {"code": made_by.get("code") or "", "settings": made_by["config_hash"][:DIGEST_LENGTH]}
+    return (made_by.get("versions") or {}).get("suchus", ""), made_by.get("commit") or "", digests
 
 
 def _entry(kind: str, key: str, fields: Mapping[str, str]) -> str:

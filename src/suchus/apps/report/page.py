@@ -11,8 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from suchus.apps.report.beside import compare_with_animals
-from suchus.apps.report.outcome_page import MARKS, PAGE, verdict_rows, write_outcome_page
-from suchus.apps.report.rendering import embedded, number, quantity, render, tied
+from suchus.apps.report.outcome_page import MARKS, PAGE, is_reduced, verdict_rows, write_outcome_page
 from suchus.apps.report.result import Failure, Result
 from suchus.article.paper import AUTHORS, CLAIMS, ERRATA, TITLE
 from suchus.core.errors import SuchusError
@@ -25,6 +24,7 @@ from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.metrics.energy import METRES
 from suchus.visual import figures
+from suchus.visual.pages import embedded, number, quantity, render
 
 _MIN_GIST_LENGTH = 60
 """Letters that say something [-]."""
@@ -44,10 +44,18 @@ HEADLINE = (
 """Claims that the page begins with: what the article is about, in its order."""
 
 
-def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str | Path) -> Path:
+def write_page(
+    results: Sequence[Result], failures: Sequence[Failure], path: str | Path, *, left_out: Sequence[str] = ()
+) -> Path:
     """Write the page, and those of outcomes that have none yet, and return its path.
 
     An earlier one stays until the new one is complete.
+
+    Args:
+        results: results in the order of the page.
+        failures: what did not.
+        path: file of the page.
+        left_out: names of the experiments that were not run.
 
     Raises:
         Unwritable: the place cannot be written to.
@@ -56,20 +64,28 @@ def write_page(results: Sequence[Result], failures: Sequence[Failure], path: str
     for result in results:
         if not (result.folder / PAGE).is_file():
             write_outcome_page(result.folder)
-    text = render_page(results, failures, path.parent)
+    text = render_page(results, failures, path.parent, left_out=left_out)
     return write(path, text)
 
 
-def render_page(results: Sequence[Result], failures: Sequence[Failure], page_folder: str | Path | None = None) -> str:
+def render_page(
+    results: Sequence[Result],
+    failures: Sequence[Failure],
+    page_folder: str | Path | None = None,
+    *,
+    left_out: Sequence[str] = (),
+) -> str:
     """Return the page as text.
 
     Args:
         results: results in the order of the page.
         failures: what did not.
         page_folder: the folder of the page, from which it links films and replays; None: the folder of the results.
+        left_out: names of the experiments that were not run.
     """
     page_folder = None if page_folder is None else Path(page_folder)
-    return render("page.html", page_folder, _content(results, failures), tied=tied, gist=_gist)
+    content = _content(results, failures)
+    return render("report.html", page_folder, left_out=left_out, gist=_gist, **content)
 
 
 def _gist(text: str) -> str:
@@ -99,6 +115,8 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
     return {
         "results": results,
         "pages": {result.name: result.folder / PAGE for result in results},
+        "reduced": [result.name for result in results if is_reduced(result)],
+        "thumbnails": {result.name: result.pictures[0].thumbnail for result in results if result.pictures},
         "unjudged": {result.name: result.outcome.get("unjudged", "") for result in results},
         "title": TITLE,
         "authors": AUTHORS,
@@ -118,7 +136,7 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "untouched": [c for c in CLAIMS.values() if is_article_robot and not c.of and c.key not in verdict_by_claim],
         "beside": compare_with_animals(robot, answered),
         "metres": metres(answered),
-        "shown": next((result for result in results if result.replays), None),
+        "shown": max((result for result in results if result.replays), key=_headline_count, default=None),
         "robot": robot,
         "sized": robot.name if robot.name in ROBOTS else "FILE.toml",
         "others": robot_counts,
@@ -129,6 +147,11 @@ def _content(results: Sequence[Result], failures: Sequence[Failure]) -> dict[str
         "misprints": tuple(ERRATA.values()) if is_article_robot else (),
         "versions": versions(),
     }
+
+
+def _headline_count(result: Result) -> int:
+    """Return how many of the claims that the page begins with a result judges [-]."""
+    return sum(verdict["claim"] in HEADLINE for verdict in result.outcome["verdicts"])
 
 
 def _counts(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, int]:

@@ -9,11 +9,11 @@ from typing import Any
 from markupsafe import Markup
 from pydantic import BaseModel, ConfigDict, FiniteFloat, ValidationError
 
-from suchus.apps.report.rendering import embedded
 from suchus.article.verdict import Word
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 from suchus.core.files import digest, read_json, read_text
 from suchus.visual.figures import WIDTH
+from suchus.visual.pages import as_pixels, embedded
 
 OUTCOME = "outcome.json"
 RECORD = "record.nc"
@@ -109,6 +109,10 @@ def check_described(outcome: Any, file: Path) -> None:
         ) from error
 
 
+_THUMBNAIL_WIDTH = 288
+"""Width of a small picture [pixel], which is shown at half of it and sharp on fine screens."""
+
+
 def content_hash(outcome: Mapping[str, Any]) -> str:
     """Return the SHA-256 of an outcome without its command and provenance, which differ between equal runs."""
     return digest({name: value for name, value in outcome.items() if name not in ("command", "provenance")})
@@ -135,6 +139,12 @@ class Picture:
     def source(self) -> Markup:
         """The picture itself as a data URI."""
         return embedded(self.file, self.file.with_suffix(".png"))
+
+    @property
+    def thumbnail(self) -> Markup:
+        """A small picture of it as a data URI; empty where its pixels do not stand beside it."""
+        png = self.file.with_suffix(".png")
+        return as_pixels(png.read_bytes(), _THUMBNAIL_WIDTH) if png.is_file() else Markup()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

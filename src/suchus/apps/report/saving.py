@@ -10,12 +10,12 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from suchus.apps.report.outcome_page import write_outcome_page
-from suchus.apps.report.rendering import number
 from suchus.apps.report.result import OUTCOME, RECORD, content_hash
 from suchus.article.verdict import Verdict, ladder
 from suchus.core import files as record
 from suchus.experiments.experiment import Experiment, Measure, Outcome
 from suchus.visual import figures as pictures
+from suchus.visual.pages import number
 
 
 def check_place(folder: str | Path) -> None:

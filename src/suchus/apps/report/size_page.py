@@ -3,11 +3,10 @@
 import csv
 import io
 from collections.abc import Mapping, Sequence
-from math import degrees, isfinite
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from suchus.apps.report.rendering import embedded, number, render
 from suchus.core.files import write
 from suchus.hardware.loads import AT_LIMIT, FULL_WOUND, ServoLoad
 from suchus.hardware.sizing import ServoFamily, Sizing, binding_limit, link_loads, use, with_motors
@@ -15,6 +14,7 @@ from suchus.robot import blueprint
 from suchus.robot.design import Motor, layout
 from suchus.visual import figures
 from suchus.visual.figures.servos import ServoUse, draw_use
+from suchus.visual.pages import embedded, number, render
 
 PAGE, SERVOS, FAMILIES, ROBOT = "size.html", "servos.csv", "families.csv", "robot.toml"
 _COLUMNS = (
@@ -61,7 +61,7 @@ def write_size(sizing: Sizing, folder: Path, *, hours: float = 1.0) -> None:
         figure = draw_use(uses(best), f"{sizing.robot.name}: {best.name}")
         svg, png = figures.save(figure, folder, "servos")
         pictures.append({"source": embedded(svg, png), "caption": figures.caption(figure)})
-    text = render("size.html", folder, _content(sizing, pictures, hours), deg=degrees)
+    text = render("size.html", folder, **_content(sizing, pictures, hours))
     write(folder / PAGE, text)
 
 
@@ -206,9 +206,11 @@ def _overheating(sizing: Sizing) -> list[str]:
     assert winding.heat is not None
     count = len({name for _, name, _, _ in overheated})
     servo_text = f"{name} gets too warm" if count == 1 else f"{count} servos get too warm, {name} first"
-    final_text = f"would reach {load.steady:.0f} °C" if isfinite(load.steady) else "would never stop warming"
+    limit = f"{winding.heat.limit:.0f}"
+    steady = f"{load.steady:.0f}" if f"{load.steady:.0f}" != limit else f"{load.steady:.1f}"
+    final_text = f"would reach {steady} °C" if isfinite(load.steady) else "would never stop warming"
     return [
-        f"As it is designed, {servo_text}: in {case} it passes the {winding.heat.limit:.0f} °C that are allowed after "
+        f"As it is designed, {servo_text}: in {case} it passes the {limit} °C that are allowed after "
         f"{time_to_limit / 60:.2g} min and {final_text} if the movement went on for ever."
     ]
 

@@ -213,7 +213,12 @@ class Session:
                 self._step()
 
     def tune(self, name: str, value: object) -> str:
-        """Turn a knob of the gait as far as the robot follows; return a sentence if that is not as asked."""
+        """Turn a knob of the gait as far as the robot follows; return a sentence if that is not as asked.
+
+        Args:
+            name: name of the knob, see ``suchus.robot.motion.NUMBERS``.
+            value: value in the unit of the knob, as the page shows it: % of a limb's reach, degrees, seconds; anything.
+        """
         with self._lock:
             gait, notice = tune_gait(self.robot, self.settings.gait, name, value)
             return notice if gait == self.settings.gait else self._change(replace(self.settings, gait=gait)) or notice

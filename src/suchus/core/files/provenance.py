@@ -35,7 +35,7 @@ def provenance(settings: Mapping[str, Any], *, seconds: float) -> dict[str, Any]
         "versions": versions(),
         "machine": machine.provenance(),
         "code": package_digest(),
-        "commit": _commit_of_package(),
+        "commit": package_commit(),
         "seed": plain(settings.get("seed")),
         "seconds": round(seconds, 3),
     }
@@ -63,7 +63,7 @@ def commit_of(root: str | Path, *folders: str) -> str:
 
 
 @cache
-def _commit_of_package() -> str:
+def package_commit() -> str:
     """Return the commit of the checkout from which suchus runs, looked up once; empty for an installed package."""
     return commit_of(_PACKAGE.parents[1], "src")
 

@@ -10,9 +10,9 @@ from suchus.experiments.study import Arm, Vary
 from suchus.experiments.study.plan import vary_assumption
 from suchus.robot.control import Standing, Walking
 from suchus.robot.design import Robot, check_needs, layout, value_at
-from suchus.robot.gaits import GAITS, conditions_of, control_group, default_gait
+from suchus.robot.gaits import DRAFTED, GAITS, conditions_of, control_group, default_gait
 from suchus.robot.gaits.belly_crawl import FRONT, HIND
-from suchus.robot.motion import Gait
+from suchus.robot.motion import Gait, draft_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import FAILED_JOINTS, Run, failing_joints, joint_failure
 
@@ -77,14 +77,11 @@ def crawl(robot: Robot | None = None) -> Optimisation:
     )
 
 
-def _crawl_of(robot: Robot) -> Optimisation:
-    """Return the search for the best legs of another body, with its axis and with limbs only.
-
-    It starts from the robot's own gait. Each range is that of the article's crawl, moved as far as it must be to hold
-    the gait's own value. Limits in metres grow with the length of the body.
+def search_gait(robot: Robot) -> Gait:
+    """Return the gait from which a search for legs starts: the robot's own, or a draft where that has no strokes.
 
     Raises:
-        UnsuitedRobot: it has no limbs or no axis that bends, or its feet follow no paths.
+        UnsuitedRobot: it has no limbs or no axis that bends, or no gait of it has feet that follow paths.
     """
     check_needs(
         robot,
@@ -92,12 +89,26 @@ def _crawl_of(robot: Robot) -> Optimisation:
         "the search crawl",
         remedy="choose another robot, or write a search as a file (docs/optimise.md)",
     )
-    gait = default_gait(robot)
+    own_gait = default_gait(robot)
+    gait = own_gait if own_gait.has("strokes") else draft_gait(robot, DRAFTED)
     if not gait.has("strokes"):
         raise UnsuitedRobot(
             f"the search crawl needs limbs whose feet follow paths; robot {robot.name!r} walks in the gait "
-            f"{gait.name!r}, which has none: choose another robot, or write a search as a file (docs/optimise.md)."
+            f"{gait.name!r}, which has none: write a search as a file (docs/optimise.md)."
         )
+    return gait
+
+
+def _crawl_of(robot: Robot) -> Optimisation:
+    """Return the search for the best legs of another body, with its axis and with limbs only.
+
+    It starts from the gait that ``search_gait`` returns. Each range is that of the article's crawl, moved as far as it
+    must be to hold the gait's own value. Limits in metres grow with the length of the body.
+
+    Raises:
+        UnsuitedRobot: it has no limbs or no axis that bends, or its feet follow no paths.
+    """
+    gait = search_gait(robot)
     legs = [row for row in _LEGS if not row[0].startswith("limbs[")]
     for number in range(len(gait.limbs)):
         pattern = 0 if number < len(gait.limbs) - 1 else 1
@@ -125,8 +136,8 @@ def _crawl_of(robot: Robot) -> Optimisation:
         evaluations=960,
         seed=1,
         reasons=(
-            "The cycle is that of the robot's own gait. Ranges are those of the article's crawl in parts of the limbs, "
-            "moved where they would not hold the gait's own value.",
+            f"The cycle is that of the gait {gait.name}. Ranges are those of the article's crawl in parts of the "
+            "limbs, moved where they would not hold the gait's own value.",
             "Both conditions have the same legs, ranges, limits, population and budget; limbs_only holds the axis "
             "straight.",
         ),

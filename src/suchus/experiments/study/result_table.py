@@ -1,15 +1,13 @@
 """A page of results: text, tables and pictures in one HTML file that needs nothing else."""
 
-import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
-from suchus.core.files import versions
 from suchus.visual import figures
+from suchus.visual.pages import embedded, render
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,30 +59,8 @@ def write_tables(
     """
     sources = {}
     for name, figure in pictures.items():
-        svg, _ = figures.save(figure, folder, name)
-        text = base64.b64encode(svg.read_bytes()).decode()
-        sources[name] = (f"data:image/svg+xml;base64,{text}", figures.caption(figure))
-    environment = Environment(
-        loader=PackageLoader("suchus.experiments.study"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    page_sections = [
-        {
-            "title": section.title,
-            "texts": section.texts,
-            "links": section.links,
-            "pictures": [sources[name] for name in section.figures],
-            "tables": section.tables,
-        }
-        for section in sections
-    ]
-    foot = f"suchus {versions()['suchus']}, MuJoCo {versions()['mujoco']}."
-    page = environment.get_template("result_table.html").render(
-        title=title, lead=lead, sections=page_sections, foot=foot
-    )
+        sources[name] = (embedded(*figures.save(figure, folder, name)), figures.caption(figure))
+    page = render("tables.html", folder, title=title, lead=lead, sections=sections, pictures=sources)
     path = folder / "index.html"
     path.write_text(page, encoding="utf-8")
     return path

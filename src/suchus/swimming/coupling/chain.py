@@ -94,7 +94,7 @@ class MidlineChain:
         return ChainState(flow_place, moving)
 
     def of_robot(self, values: np.ndarray) -> np.ndarray:
-        """Return a generalised force or an added mass in the robot's own coordinates."""
+        """Return a generalised force or an added mass of the robot's coordinates; their signs are not the flow's."""
         return self._signs * values if values.ndim == 1 else self._signs[:, None] * values * self._signs
 
     def start_path(self, time: float, posture: ChainState) -> "ChainPath":

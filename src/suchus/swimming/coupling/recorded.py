@@ -23,7 +23,7 @@ class Series:
     time: list[float] = field(default_factory=list)
     """End of the step [s]."""
     force: list[np.ndarray] = field(default_factory=list)
-    """Generalised force of the water, in the world [N, N m]."""
+    """Generalised force of the water on each coordinate of the robot: its place, heading and joints [N, N m]."""
     links: list[np.ndarray] = field(default_factory=list)
     """Force in the world and torque about the vertical through the link's middle, of each, shape (link, 4) [N, N m]."""
     residual: list[tuple[float, float]] = field(default_factory=list)

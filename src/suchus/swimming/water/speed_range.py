@@ -122,22 +122,31 @@ class RealWaterSpeed:
         return max((estimate.high for estimate in self.estimates), default=float("nan"))
 
     @property
-    def sentence(self) -> str:
-        """The answer: the speed by the default model, the range, and what each model leaves out."""
+    def answer(self) -> str:
+        """The speed by the default model and the range over the models that apply, in a sentence."""
         number = f"f L²/ν = {self.reynolds:.1e}"
         if not self.estimates:
             return f"How fast it swims in real water is not answered: no model of the water applies at {number}."
         default = self.estimates[0]
-        omissions = "; ".join(
+        speed = f"{default.speed:.3f} m/s by {WATER_MODELS[default.model].label}"
+        if self.low < self.high:
+            span = f"{self.low:.3f} to {self.high:.3f} m/s over the models that apply"
+            speed = f"{speed}, {span}" if default.model == DEFAULT_MODEL else span
+        return f"In real water, at {number}, it swims at {speed}."
+
+    @property
+    def omissions(self) -> str:
+        """What each model that applies leaves out; empty without one."""
+        return "; ".join(
             f"{WATER_MODELS[estimate.model].label} leave{'' if estimate.model == DEFAULT_MODEL else 's'} out "
             f"{WATER_MODELS[estimate.model].omission}"
             for estimate in self.estimates
         )
-        answer = f"{default.speed:.3f} m/s by {WATER_MODELS[default.model].label}"
-        if self.low < self.high:
-            span = f"{self.low:.3f} to {self.high:.3f} m/s over the models that apply"
-            answer = f"{answer}, {span}" if default.model == DEFAULT_MODEL else span
-        return f"In real water, at {number}, it swims at {answer} ({omissions})."
+
+    @property
+    def sentence(self) -> str:
+        """The answer, with what each model leaves out."""
+        return f"{self.answer.removesuffix('.')} ({self.omissions})." if self.estimates else self.answer
 
     @property
     def other_waters_sentence(self) -> str:

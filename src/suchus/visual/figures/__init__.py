@@ -1,6 +1,7 @@
 """From a record to a picture: every figure is drawn from what was recorded and nothing else."""
 
-from suchus.visual.figures.drawing import dimension_drawing
+from typing import TYPE_CHECKING, Any
+
 from suchus.visual.figures.film import film, film_caption
 from suchus.visual.figures.style import (
     COLOURS,
@@ -18,6 +19,9 @@ from suchus.visual.figures.style import (
     save,
     styled,
 )
+
+if TYPE_CHECKING:
+    from suchus.visual.figures.drawing import dimension_drawing
 
 __all__ = [
     "COLOURS",
@@ -38,3 +42,12 @@ __all__ = [
     "save",
     "styled",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Return the drawing of a robot, which is imported when it is used: a figure of a flow needs no robot."""
+    if name == "dimension_drawing":
+        from suchus.visual.figures.drawing import dimension_drawing  # noqa: PLC0415  see above
+
+        return dimension_drawing
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

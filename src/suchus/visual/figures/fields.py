@@ -1,7 +1,8 @@
 """Fields of a flow around a body: colours with two sides, the outline, the midline, streamlines."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
@@ -10,6 +11,9 @@ from matplotlib.patches import Polygon
 from scipy.ndimage import zoom
 
 from suchus.visual.figures.data import carry
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SKIN, EDGE = "#C9DCCB", "#2F4737"
 """Colours of a body seen from above."""
@@ -28,7 +32,7 @@ def span(values: np.ndarray, share: float) -> float:
 
 
 def draw_field(
-    ax: Axes, record: xr.Dataset, name: str, field_name: str, index: int, limit: float, cmap: str
+    ax: Axes, record: "xr.Dataset", name: str, field_name: str, index: int, limit: float, cmap: str
 ) -> AxesImage:
     """Draw one instant of a field as a picture in even steps of colour, which stays small in an SVG.
 
@@ -64,7 +68,7 @@ def smooth(values: np.ndarray, pixels: int = _PIXELS) -> np.ndarray:
     return np.asarray(zoom(values, max(1, round(pixels / values.shape[1])), order=1, grid_mode=True, mode="nearest"))
 
 
-def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.ndarray]:
+def outline(record: "xr.Dataset", name: str, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the outline and the midline of a body at one instant, each of shape (point, 2) [m].
 
     Args:
@@ -80,7 +84,7 @@ def outline(record: xr.Dataset, name: str, index: int) -> tuple[np.ndarray, np.n
     return np.vstack([line + half_width_vector, (line - half_width_vector)[::-1]]), line
 
 
-def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Polygon, Line2D]:
+def draw_body(ax: Axes, record: "xr.Dataset", name: str, index: int) -> tuple[Polygon, Line2D]:
     """Draw a body and its midline; return both artists, which a film moves."""
     edge, line = outline(record, name, index)
     body = Polygon(edge, facecolor=SKIN, edgecolor=EDGE, linewidth=1.0, zorder=3)
@@ -89,14 +93,14 @@ def draw_body(ax: Axes, record: xr.Dataset, name: str, index: int) -> tuple[Poly
     return body, midline
 
 
-def move_body(artists: tuple[Polygon, Line2D], record: xr.Dataset, name: str, index: int) -> None:
+def move_body(artists: tuple[Polygon, Line2D], record: "xr.Dataset", name: str, index: int) -> None:
     """Move the artists of ``draw_body`` to another instant."""
     edge, line = outline(record, name, index)
     artists[0].set_xy(edge)
     artists[1].set_data(line[:, 0], line[:, 1])
 
 
-def draw_streamlines(ax: Axes, record: xr.Dataset, name: str, index: int) -> None:
+def draw_streamlines(ax: Axes, record: "xr.Dataset", name: str, index: int) -> None:
     """Draw the streamlines of the water at one instant."""
     x, y = record[f"{name}_x"].values, record[f"{name}_y"].values
     even_axes = (

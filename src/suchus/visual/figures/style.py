@@ -9,17 +9,19 @@ from contextlib import AbstractContextManager
 from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
 
-from suchus.core.files import write
-from suchus.robot.design import LEGS, Robot, layout
+from suchus.core.writing import write
 from suchus.visual.figures.data import table
 from suchus.visual.figures.uncover import UncoveredLegendLayout
+
+if TYPE_CHECKING:
+    from suchus.robot.design import Robot
 
 COLOURS: Final[Mapping[str, str]] = MappingProxyType(
     {
@@ -50,8 +52,10 @@ COLOURS: Final[Mapping[str, str]] = MappingProxyType(
 _EXTRA_COLOURS: Final = ("#009E73", "#B0558A", "#56B4E9", "#E69F00", "#767676", "#333333")
 
 
-def limb_colours(robot: Robot) -> list[tuple[str, str]]:
+def limb_colours(robot: "Robot") -> list[tuple[str, str]]:
     """Return each limb of a robot with its colour: those of the article's legs, then others in turn."""
+    from suchus.robot.design import LEGS, layout  # noqa: PLC0415  a figure of a flow needs no robot
+
     names = layout(robot).limb_names
     spare = iter(_EXTRA_COLOURS * (len(names) // len(_EXTRA_COLOURS) + 1))
     return [(name, COLOURS[name] if name in LEGS else next(spare)) for name in names]

@@ -1,9 +1,8 @@
 """The page: a run or a swim in space, packed into one HTML file with its player."""
 
 import base64
-import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from io import BytesIO, StringIO
 from math import degrees
 from pathlib import Path
@@ -11,17 +10,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 from PIL import Image
 
 from suchus.core.errors import InvalidDesign
-from suchus.core.files import versions, write
+from suchus.core.files import write
 from suchus.robot.design import Robot
 from suchus.robot.design.ground import Ground
 from suchus.sim.record import ground_of
 from suchus.visual.figures import limb_colours, panels, styled, vortices
 from suchus.visual.figures.posture import draw_posture
+from suchus.visual.pages import embed_json, render
 from suchus.visual.replay.frames import Frames, check_record, frames
 from suchus.visual.replay.scene import ARROW, KEYS, PackedArrays, quantise, scene
 
@@ -69,6 +68,7 @@ def render_template(
     title: str = "",
     caption: str = "",
     overlaid: bool = False,
+    is_live: bool = False,
     **template_values: Any,
 ) -> str:
     """Return a template that extends ``replay.html``, filled with runs; see ``replay``.
@@ -84,6 +84,7 @@ def render_template(
         title: heading; by default robot and gait.
         caption: one or two sentences.
         overlaid: whether run and ghost begin in the same place.
+        is_live: whether the page goes on from the records by itself; else it speaks of feet only where they stand.
         **template_values: further values that the template names.
 
     Raises:
@@ -100,7 +101,8 @@ def render_template(
     overlaid = overlaid or grounds[0].relief is not None
     meta, data = scene(robot, moving, labels, grounds[0], overlaid=overlaid)
     still_picture, still_time = _still_picture(robot, runs[0])
-    return environment().get_template(template).render(
+    return render(
+        template,
         title=title or f"{robot.name}: {_gait_text(record).replace('_', ' ')}",
         caption=" ".join(f"{caption} {_ground_text(grounds)}".split()),
         alt=_in_words(robot, moving, labels),
@@ -112,8 +114,8 @@ def render_template(
         beside=grounds[0].relief is None,
         overlaid=overlaid,
         keys=KEYS | {"legs": limb_colours(robot)},
+        stands=bool(limb_colours(robot)) and (is_live or any(run.forces.any() for run in moving)),
         arrow=f"{100 * ARROW * robot.length:.0f} cm",
-        version=versions()["suchus"],
         meta=embed_json(meta | {"chosen": bool(choice)}),
         data=data,
         **template_values,
@@ -127,28 +129,6 @@ def save(page: str, path: str | Path) -> Path:
         Unwritable: the place cannot be written to.
     """
     return write(path, page)
-
-
-def environment() -> Environment:
-    """Return the templates of the pages, which hold styles and players as globals."""
-    templates = Environment(
-        loader=PackageLoader("suchus.visual.replay"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    loader = templates.loader
-    assert loader is not None
-    files = {"style": "player.css", "shared": "shared.js", "player": "player.js", "wake_player": "wake.js"}
-    for name, file in files.items():
-        templates.globals[name] = Markup(loader.get_source(templates, file)[0])
-    return templates
-
-
-def embed_json(meta: Mapping[str, Any] | Sequence[Any]) -> Markup:
-    """Return values as JSON that is safe inside a page's script."""
-    return Markup(json.dumps(meta, separators=(",", ":")).replace("<", "\\u003c"))
 
 
 def _ground_text(grounds: Sequence[Ground]) -> str:
@@ -217,7 +197,8 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
     png = BytesIO()
     Image.fromarray(still_picture).save(png, format="PNG", optimize=True)
     picture = base64.b64encode(png.getvalue()).decode("ascii")
-    return environment().get_template("wake.html").render(
+    return render(
+        "wake.html",
         title=title or "A swim in three dimensions",
         caption=" ".join(caption.split()),
         alt=f"Three-dimensional replay of a swimming body and the vortices around it, {record.sizes['frame']} instants "
@@ -225,7 +206,6 @@ def wake_replay(record: xr.Dataset, *, title: str = "", caption: str = "") -> st
         still=picture,
         limit=f"{meta['limit']:.3g}",
         keys={"left": vortices.hex_colour(1.0), "right": vortices.hex_colour(-1.0)},
-        version=versions()["suchus"],
         meta=embed_json(meta),
         data=data,
     )  # fmt: skip

@@ -1,6 +1,6 @@
 """One picture of a robot in the look of the replays, without OpenGL: floor with lines, shadow, skin, water and goal.
 
-Camera, light and colours are those of ``templates/player.js``. Triangles are drawn from far to near.
+Camera, light and colours are those of ``pages/templates/player.js``. Triangles are drawn from far to near.
 """
 
 from dataclasses import dataclass

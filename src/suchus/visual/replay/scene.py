@@ -6,6 +6,7 @@ from math import ceil, floor
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from suchus.core.rotation import rotate
 from suchus.robot.design import GRAVITY, Robot, layout
@@ -96,10 +97,18 @@ def scene(
         "colours": {name: _rgb(text) for name, text in KEYS.items()}
         | {"legs": [_rgb(colour) for _, colour in limb_colours(robot)]},
         "skin": _packed_skin(surface, pack),
+        "head": _head(robot, surface),
         "actors": [_packed(robot, run, name, relief, pack) for run, name in zip(moving, labels, strict=False)],
         "relief": None if relief is None else _packed_relief(relief, pack),
     }
     return meta, pack.text()
+
+
+def _head(robot: Robot, surface: Skin) -> dict[str, Any]:
+    """Return the bone at the front of the axis, and the foremost point of its skin at rest [m]."""
+    bone = surface.bones.index(robot.axis[0].name)
+    points = surface.vertices[surface.indices[:, 0] == bone]
+    return {"bone": bone, "at": np.round(points[points[:, 0].argmax()], 6).tolist()}
 
 
 def _packed_skin(surface: Skin, pack: PackedArrays) -> dict[str, Any]:
@@ -152,9 +161,13 @@ def _packed_water(run: Frames, ground: Ground, pack: PackedArrays) -> dict[str, 
     """Return the level of the water in each frame, and the direction against gravity in the frame of the ground."""
     if run.level is None:
         return None
+    return {"levels": pack.add(run.level.astype(np.float32)), "up": np.round(upward(ground), 9).tolist()}
+
+
+def upward(ground: Ground) -> Float[np.ndarray, "3"]:
+    """Return the direction against gravity in the frame of the ground."""
     back = slope(ground.uphill, ground.sideways) * np.array([1.0, -1.0, -1.0, -1.0])
-    upward = rotate(back, np.array([0.0, 0.0, 1.0]))
-    return {"levels": pack.add(run.level.astype(np.float32)), "up": np.round(upward, 9).tolist()}
+    return rotate(back, np.array([0.0, 0.0, 1.0]))
 
 
 def _packed_relief(relief: Relief, pack: PackedArrays) -> dict[str, Any]:

@@ -104,7 +104,7 @@ class BipedalReach(Experiment):
     """Further commanded distances of the centre of mass behind the feet, which show how much height a safe stand
     costs [m]."""
     pushes: tuple[float, ...] = (1.0, 2.0, 4.0, 6.0, 8.0, 11.0, 14.0, 17.0, 20.0)
-    """Forces of the first pass; the second pass refines between two of them [N]."""
+    """Forces of the first pass; the second pass refines between two of them; empty for no pushes [N]."""
     finer: int = 4
     """Number of forces of the second pass [-]."""
     wait: float = 3.0
@@ -124,6 +124,16 @@ class BipedalReach(Experiment):
             check.number("wait", 0.01, 60.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.number("longer", 0.001, 0.2, "")
+
+    def for_verdicts(self) -> "BipedalReach":
+        """Return the same question without pushes, with a coarse map of torque and mass, and with a shorter stand.
+
+        The article does not say for how long the robot stands.
+        """
+        return replace(
+            self, hold=min(self.hold, 20.0), torques=_ends_and_middle(self.torques),
+            forebodies=_ends_and_middle(self.forebodies), leads=(), pushes=(),
+        )  # fmt: skip
 
     def quick(self) -> "BipedalReach":
         """A short stand, the corners of the map, few pushes."""
@@ -306,10 +316,23 @@ class BipedalReach(Experiment):
         return data
 
     def _toppling_pushes(self, progress: Any) -> xr.Dataset:
-        """Return the smallest forces that topple the robot, with feedback and without, over the commanded lead [N]."""
+        """Return the smallest forces that topple the robot, with feedback and without, over the commanded lead [N].
+
+        Beside them are the reach and the lead of each stand [m]; of no pushes these alone.
+        """
         leads = sorted({*self.leads, self._lead})
         balances = {"on": self.balance, "off": None}
         stand_results = self._stand_results([self.robot] * len(leads), leads, staged(progress, "", 0.0, 0.1))
+        stands = stand_results.reach.values > _STANDING_FRACTION * stretched_length(self.robot)
+        stand_record = xr.Dataset(
+            {
+                "lead_reach": ("commanded", np.where(stands, stand_results.reach, np.nan), {"units": "m"}),
+                "lead_found": ("commanded", np.where(stands, stand_results.lead, np.nan), {"units": "m"}),
+            },
+            coords={"commanded": leads},
+        )
+        if not self.pushes:
+            return stand_record
         runs = [
             Run(robot=self.robot, gait=self.straight, control=control or OpenLoop())
             for balance in balances.values()
@@ -328,18 +351,9 @@ class BipedalReach(Experiment):
             timestep=_COARSE_TIMESTEP,
             progress=staged(progress, "", 0.1, 1.0),
         ).reshape(len(balances), len(leads), len(_DIRECTIONS))
-        stands = stand_results.reach.values > _STANDING_FRACTION * stretched_length(self.robot)
-        return xr.Dataset(
-            {
-                "push": (
-                    ("feedback", "commanded", "direction"),
-                    np.where(stands[:, None], forces, 0.0),
-                    {"units": "N"},
-                ),
-                "lead_reach": ("commanded", np.where(stands, stand_results.reach, np.nan), {"units": "m"}),
-                "lead_found": ("commanded", np.where(stands, stand_results.lead, np.nan), {"units": "m"}),
-            },
-            coords={"direction": list(_DIRECTIONS), "commanded": leads, "feedback": list(balances)},
+        forces = np.where(stands[:, None], forces, 0.0)
+        return stand_record.assign(push=(("feedback", "commanded", "direction"), forces, {"units": "N"})).assign_coords(
+            direction=list(_DIRECTIONS), feedback=list(balances)
         )
 
     def _lengths(self, progress: Any) -> xr.Dataset:
@@ -401,8 +415,13 @@ class BipedalReach(Experiment):
             "height_over_time": draw_heights(record, self.hold),
             "torque_and_mass": draw_limits(self.robot, record, _STANDING_FRACTION * stretched_length(self.robot)),
             "ceiling": draw_ceiling(self.robot, record),
-            "pushes": draw_pushes(record, record.attrs["commanded_lead"]),
+            **({"pushes": draw_pushes(record, record.attrs["commanded_lead"])} if "push" in record else {}),
         }
+
+
+def _ends_and_middle(values: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the first, the middle and the last of some values."""
+    return tuple(values[i] for i in sorted({0, len(values) // 2, len(values) - 1}))
 
 
 def _heights(record: xr.Dataset) -> Measures:
@@ -437,7 +456,7 @@ def _pushes(record: xr.Dataset) -> Measures:
         height = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(upright_time, leave_time))
         is_upright = (height > record.attrs["least"]).all("repeat_time")
         measures[f"stays_up_{feedback}"] = Measure(float(is_upright.mean()), "-")
-        for direction in record.direction.values:
+        for direction in record.direction.values if "push" in record else ():
             force = record.push.sel(feedback=feedback, commanded=record.attrs["commanded_lead"], direction=direction)
             measures[f"push_{direction}_{feedback}"] = Measure(float(force), "N")
     return measures

@@ -53,6 +53,7 @@ class DeathRoll(Experiment):
         "rate_c_shape_water",
         "power_c_shape_water",
     )
+    reproduces: ClassVar[bool] = False
     needs = ("trunk", "trunk_pitch", "tail_yaw", "tail_pitch")
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 3}
 

@@ -27,7 +27,7 @@ from suchus.experiments.experiment import (
     staged,
 )
 from suchus.robot.control import Learned, Policy
-from suchus.robot.design import layout
+from suchus.robot.design import lacking, layout
 from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import CONDITIONS, belly_crawl, conditions_of
 from suchus.robot.motion import START, FootPath, Gait, suits
@@ -100,6 +100,13 @@ class Displacement(TwoGroups):
         if self.policy is not None:
             self.policy.check_robot(self.robot)
 
+    def for_verdicts(self) -> "Displacement":
+        """Return the same question with the ends of the map and the gait itself."""
+        return replace(
+            self, strokes=_ends_and(1.0, self.strokes), bends=_ends_and(1.0, self.bends),
+            pitches=_ends_and(self.pitches[len(self.pitches) // 2], self.pitches), phases=_ends_and(0.0, self.phases),
+        )  # fmt: skip
+
     def quick(self) -> "Displacement":
         """One cycle, two repeats, four corners of the map."""
         strokes = tuple(stroke / _CRAWL.stroke for stroke in (0.02, 0.06))
@@ -123,15 +130,16 @@ class Displacement(TwoGroups):
         return SimulationResult(record=record, replays=self._replays(record))
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of the crawl with spine and tail and of that with limbs only."""
+        """Return the replay of the crawl with all of the axis and of that with limbs only."""
+        axis = "a bending trunk" if lacking(self.robot, ("tail_yaw",)) else "spine and tail"
         return replayed(
             "crawl_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=1),
-            labels=("spine and tail", "limbs only"),
-            title="Crawling with spine and tail, and without",
-            caption="The same legs twice: with spine and tail, and, half transparent, with limbs only.",
+            labels=(axis, "limbs only"),
+            title=f"Crawling with {axis}, and without",
+            caption=f"The same legs twice: with {axis}, and, half transparent, with limbs only.",
         )
 
     def _displacement_map(self, duration: float, progress: Any) -> xr.Dataset:
@@ -283,6 +291,11 @@ class Displacement(TwoGroups):
         return all(
             getattr(self, name) == getattr(default_experiment, name) for name in ("robot", "gait", "control_group")
         )
+
+
+def _ends_and(value: float, values: tuple[float, ...]) -> tuple[float, ...]:
+    """Return the first and the last of some rising values, and a value between them."""
+    return tuple(sorted({values[0], value, values[-1]}))
 
 
 def _forward(record: xr.Dataset) -> xr.DataArray:

@@ -74,6 +74,8 @@ DISTURBANCES = (
 """Disturbances; each begins after one cycle, except that a slope exists from the start."""
 _CLAIM_LAWS = ("off", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
 _CLAIM_DISTURBANCES = ("none", "locked_spine", "uphill")
+_TOLD_DISTURBANCES = (*_CLAIM_DISTURBANCES, "kick", "push", "limp_yaw")
+"""Those of the claims, and those that the reasons of the verdicts and the explanation name."""
 _CLAIM_MEASURES = {
     *(f"{name}{end}" for name in ("converged_cross_load", "converged_wrong_sign", "way_gain_shared", "way_shared",
       "way_isolated") for end in ("", "_low", "_high")),
@@ -109,10 +111,10 @@ class Feedback(Experiment):
     needs = ("limbs", "trunk")
     judged_settings = ("robot", "gait", "kick", "slope", "push", "noise")
     judged_minima: ClassVar[Mapping[str, float]] = {
-        "starts": 16, "compared_starts": 6, "sharing_starts": 12, "judged_cycles": 7, "cycles": 12, "hold": 2.0,
+        "starts": 16, "compared_starts": 6, "sharing_starts": 12, "judged_cycles": 6, "cycles": 12, "hold": 2.0,
         "after": 5,
     }  # fmt: skip
-    answer_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "judged_cycles": 7, "cycles": 12}
+    answer_minima: ClassVar[Mapping[str, float]] = {"starts": 16, "judged_cycles": 6, "cycles": 12}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["caiman"])
     """The robot that crawls."""
@@ -126,6 +128,8 @@ class Feedback(Experiment):
     sharing_starts: int = 32
     """Greatest number of random initial limb phases with and without sharing [-]. After half of them sampling ends if
     the claim has a word by then."""
+    early_end: bool = True
+    """Whether sampling with and without sharing ends after half of the starts if the claim has a word by then."""
     judged_cycles: int = 7
     """Simulated duration of each start whose converged fraction is judged [cycle]. The slowest of 72 starts converges
     after 3.5 cycles, and the wrong sign has as long."""
@@ -144,6 +148,8 @@ class Feedback(Experiment):
     """Force on the foremost girdle's segment for 0.3 s [N]; 5 N does nothing even without feedback."""
     noise: float = 0.3
     """Standard deviation of the noise on the sensed loads of the feet, as a fraction of the load [-]."""
+    disturbances: tuple[str, ...] = DISTURBANCES
+    """Names of the disturbances that are simulated; the measures of others are not known."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
@@ -163,6 +169,27 @@ class Feedback(Experiment):
             check.each("push", ("forward", "left", "up"), -1e3, 1e3, "N")
             check.number("noise", 0.0, 10.0, "")
             check.whole("seed", 0, 2**31)
+            unknown = [name for name in self.disturbances if name not in DISTURBANCES]
+            check.that(
+                not unknown,
+                f"{self.name()}.disturbances are {', '.join(DISTURBANCES)}; there is no {', '.join(unknown)}",
+            )
+            check.that(
+                "none" in self.disturbances,
+                f"{self.name()}.disturbances lacks 'none', with which the others are compared; add it",
+            )
+
+    def for_verdicts(self) -> "Feedback":
+        """Return the same question with fewer starts of the laws that are only compared, and fewer disturbances.
+
+        A judged start has six cycles: the slowest converges after 3.5 and holds for two.
+        """
+        return replace(
+            self,
+            compared_starts=min(self.compared_starts, 6),
+            judged_cycles=min(self.judged_cycles, 6),
+            disturbances=tuple(name for name in self.disturbances if name in _TOLD_DISTURBANCES),
+        )
 
     def quick(self) -> "Feedback":
         """Two starts, few and short cycles."""
@@ -197,7 +224,8 @@ class Feedback(Experiment):
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
         starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7))
-        record = xr.merge([starts, self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0))])
+        disturbed = self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0), self.disturbances)
+        record = xr.merge([starts, disturbed])
         return SimulationResult(record=record, replays=self._replays(pair))
 
     def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
@@ -285,11 +313,12 @@ class Feedback(Experiment):
             laws: names of ``STARTS``.
             progress: callback that gets the finished fraction.
         """
-        looks = planned_looks(min(self.sharing_starts, self.starts))
+        count = min(self.sharing_starts, self.starts)
+        looks = planned_looks(count) if self.early_end else (count,)
         parts: list[xr.Dataset] = []
-        for first, count in pairwise((0, *looks)):
-            stage = staged(progress, "", first / looks[-1], count / looks[-1])
-            parts.append(self._simulate_starts(laws, range(first, count), self.cycles, stage)[0])
+        for first, end in pairwise((0, *looks)):
+            stage = staged(progress, "", first / count, end / count)
+            parts.append(self._simulate_starts(laws, range(first, end), self.cycles, stage)[0])
             record = xr.concat(parts, "start", join="exact")
             record["sharing_looks"] = (
                 (),
@@ -484,14 +513,17 @@ class Feedback(Experiment):
         is_followed = record.start_phase.isel(start=0).sel(law=["off", "own_load", "cross_load"]).notnull()
         is_followed = is_followed.all(("law", "leg")).values
         response = record.sel(time=slice(self._disturbance_time - 1e-9, None))
+        tracks = [name for name in ("limp_yaw", "push", "side_slope") if name in self.disturbances]
         return {
             "random_starts": draw_fans(error.assign_coords(time=cycles), PHASE_TOLERANCE),
             "finding_the_gait": draw_onset(
                 record.start_phase.assign_coords(start_time=cycles.values).isel(start_time=is_followed), self.gait
             ),
-            "what_each_rule_gains": draw_gain(response.x.isel(time=-1) - response.x.isel(time=0)),
+            "what_each_rule_gains": draw_gain(
+                (response.x.isel(time=-1) - response.x.isel(time=0)).dropna("disturbance", how="all")
+            ),
             "topology": draw_topology(topology(self.robot, self.gait)),
-            "disturbed_tracks": draw_tracks(response, ("limp_yaw", "push", "side_slope")),
+            **({"disturbed_tracks": draw_tracks(response, tracks)} if tracks else {}),
         }
 
 

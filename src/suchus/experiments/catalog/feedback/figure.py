@@ -142,7 +142,8 @@ def draw_gain(distance: xr.DataArray) -> Figure:
     """
     ratio = (distance / distance.sel(disturbance="none", arm="open").item()).transpose("disturbance", "arm")
     rules = [rule for rule in _RULES if rule in ratio.arm.values]
-    ratio = ratio.sel(arm=rules, disturbance=list(_DISTURBANCE_LABELS))
+    names = [name for name in _DISTURBANCE_LABELS if name in ratio.disturbance.values]
+    ratio = ratio.sel(arm=rules, disturbance=names)
     with styled(axes__grid=False):
         figure, axes = panels(1, 1, width=8.2, height=5.2)
         ax = axes[0, 0]
@@ -160,7 +161,7 @@ def draw_gain(distance: xr.DataArray) -> Figure:
                 color="white" if is_dark else "black",
             )
         ax.set_xticks(np.arange(len(rules)) + 0.5, [_RULES[rule] for rule in rules])
-        ax.set_yticks(np.arange(len(_DISTURBANCE_LABELS)) + 0.5, list(_DISTURBANCE_LABELS.values()))
+        ax.set_yticks(np.arange(len(names)) + 0.5, [_DISTURBANCE_LABELS[name] for name in names])
         ax.tick_params(length=0)
         ax.invert_yaxis()
         ax.set_xlabel("which rules are on")

@@ -60,6 +60,7 @@ class Floating(Experiment):
         "vanishing_floating",
         "roll_at_rest",
     )
+    reproduces: ClassVar[bool] = False
     answer_minima: ClassVar[Mapping[str, float]] = {"duration": 10.0}
 
     robot: Robot = field(default_factory=lambda: ROBOTS["floating_caiman"])

@@ -102,6 +102,12 @@ class GallopLimits(Experiment):
             for name in ("bounds", "walks"):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
 
+    def for_verdicts(self) -> "GallopLimits":
+        """Return the same question with a coarser map: the speeds up to the own servo's, the next, and the last two."""
+        slower = [speed for speed in self.speeds if speed <= self._leg_servo.speed]
+        faster = self.speeds[len(slower) :]
+        return replace(self, speeds=(*slower, *dict.fromkeys((*faster[:1], *faster[1:][-2:]))))
+
     def quick(self) -> "GallopLimits":
         """Return two speeds, one torque, one robot as built, half a second, a coarse step."""
         return replace(self, speeds=(7.0, 30.0), torques=(2.5,), repeats=1, seconds=0.5, timestep=0.005)

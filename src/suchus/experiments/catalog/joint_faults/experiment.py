@@ -117,6 +117,9 @@ class JointFaults(TwoGroups):
     """
     legs: Legs = "one"
     """Whether the judged fault is in one leg or in both legs of a girdle; one, because the text names single joints."""
+    hinges: int | None = None
+    """Hinges of each limb, from the hip on, that fail one after another; None for all. The article names no knee
+    [-]."""
     repeats: int = 6
     """Number of robots built of the design for each condition and fault [-]; six at least give a median an interval."""
     timestep: float = 0.005
@@ -126,9 +129,15 @@ class JointFaults(TwoGroups):
     def check(self, check: Checks) -> None:
         """Check places of locking, time step and tail."""
         check.number("hold", 0.0, 1.0, "")
+        if self.hinges is not None:
+            check.whole("hinges", 1, 100)
         check.rising("holds", 0.0, 1.0, "")
         check.number("timestep", 1e-5, control_period(self.robot), "s")
         check.number("lifted", -1.6, 1.6, "rad")
+
+    def for_verdicts(self) -> "JointFaults":
+        """Return the same question without failing knees, and with three places of locking."""
+        return replace(self, hinges=_HINGES_PER_LIMB, holds=(0.0, 0.5, 1.0))
 
     def quick(self) -> "JointFaults":
         """One cycle, two repeats, two places of locking."""
@@ -194,7 +203,8 @@ class JointFaults(TwoGroups):
     @property
     def _joints(self) -> tuple[str, ...]:
         """Names of the joints that fail."""
-        return failing_joints(self.robot)
+        joints = failing_joints(self.robot)
+        return joints if self.hinges is None else joints[: self.hinges * len(self.robot.girdles)]
 
     @property
     def _failing_joints(self) -> tuple[str, ...]:

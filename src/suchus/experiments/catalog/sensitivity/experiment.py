@@ -43,6 +43,7 @@ class Sensitivity(Experiment):
     title = "Do the article's statements survive other choices of what it does not say?"
     shows = "Section IV, Figs 12 to 21"
     answers = ("samples_walked", "samples_impossible")
+    reproduces: ClassVar[bool] = False
     needs = ("tables", "article_spine", "cable_tail")
     answer_minima: ClassVar[Mapping[str, float]] = {"samples": 16, "cycles": 2}
 

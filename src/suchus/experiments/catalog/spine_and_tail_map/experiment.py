@@ -32,6 +32,7 @@ from suchus.experiments.experiment import (
     silent,
     staged,
 )
+from suchus.experiments.optimise.ready import search_gait
 from suchus.robot.design import GRAVITY, Robot
 from suchus.robot.design.ground import BUMPS_START, Bumps
 from suchus.robot.design.scale import coarse_step
@@ -65,7 +66,6 @@ _UNITS = {"forward": "m", "speed": "m/s", "cost": "1", "electrical": "1", "margi
     _EXPLAINING, "1"
 )
 _FIRST_SIGMA, _NEXT_SIGMA = 0.2, 0.1  # spread of the first search, and of those that start from its best
-_CORRELATION = 0.06  # [m]; of bumps, about a foot's length
 _MAX_LISTED = 2  # conditions that a sentence names
 _MARGIN_SAMPLES = 8  # instants of the last cycle at which the support is looked at
 
@@ -84,7 +84,7 @@ class SpineAndTailMap(Experiment):
     title = "When do spine and tail pay, each gait at its own best?"
     shows = "Beyond the article"
     answers = ("paying_share", "saving_share", "steadier_share", "gain_base", "cost_ratio_base", "margin_change_base")
-    needs = ("legs", "shells", "article_spine", "cable_tail")
+    needs = ("foot_paths", "axis")
     reproduces = False
     answer_minima: ClassVar[Mapping[str, float]] = {
         "repeats": 6, "searches": 2, "cycles": 2, "base_evaluations": 96, "evaluations": 32,
@@ -102,6 +102,8 @@ class SpineAndTailMap(Experiment):
     """Factors on the friction of all surfaces [-]."""
     bump_heights: tuple[float, ...] = (0.02, 0.04)
     """Heights of bumps [m]; each robot as built walks on a field of its own."""
+    correlation: float = 0.06
+    """Correlation length of the bumps, about the length of a foot [m]."""
     tail_sizes: tuple[float, ...] = (0.7, 1.4)
     """Factors on width and height of the tail, and so on its area [-]."""
     strengths: tuple[float, ...] = (0.464e6, 2e6)
@@ -135,6 +137,7 @@ class SpineAndTailMap(Experiment):
             check.whole("cycles", 1, 100)
             check.whole("repeats", 1, 1000)
             check.whole("seed", 0, 2**31)
+            check.number("correlation", 1e-4, 10.0, "m")
             for name, low, high, unit in (
                 ("period_factors", 0.05, 20.0, ""), ("slopes", -1.0, 1.0, "rad"), ("frictions", 0.01, 10.0, ""),
                 ("bump_heights", 1e-5, 0.5, "m"), ("tail_sizes", 0.1, 10.0, ""), ("strengths", 1e3, 1e9, "N/m3"),
@@ -152,11 +155,32 @@ class SpineAndTailMap(Experiment):
             base_evaluations=6, evaluations=6, population=4, searches=1, cycles=1, repeats=2,
         )  # fmt: skip
 
+    def gaits_for_robot(self, robot: Robot) -> dict[str, Any]:
+        """Return the gait from which both groups of another robot search; grains stay what they are.
+
+        Raises:
+            UnsuitedRobot: its limbs follow no paths.
+        """
+        return {"gait": search_gait(robot), "strengths": self.strengths}
+
+    @property
+    def has_tail(self) -> bool:
+        """Whether the robot has a tail."""
+        return self.robot.root_index < len(self.robot.axis) - 1
+
+    @property
+    def axis_name(self) -> str:
+        """Name of what bends, for sentences."""
+        return "spine and tail" if self.has_tail else "a bending trunk"
+
     def cells(self) -> list[Cell]:
-        """Return the conditions, the base first."""
+        """Return the conditions, the base first; those of the tail's size only for a robot with a tail."""
         robot, period = self.robot, self.gait.period
+        size = round(robot.length / ROBOTS["caiman"].length, 9)
         bumps = [
-            Ground(relief=Bumps(height=height, correlation=_CORRELATION, start=BUMPS_START, seed=0))
+            Ground(
+                relief=Bumps(height=height, correlation=self.correlation, start=BUMPS_START * size, seed=0, scale=size)
+            )
             for height in self.bump_heights
         ]
         sloping = [(value, Ground(uphill=value)) for value in self.slopes]
@@ -189,7 +213,7 @@ class SpineAndTailMap(Experiment):
                 Cell(
                     _name("tail", size), "tail", f"tail area x {size:g}", with_tail_size(robot, size), Ground(), period
                 )
-                for size in self.tail_sizes
+                for size in (self.tail_sizes if self.has_tail else ())
             ),
             *(
                 Cell(
@@ -321,6 +345,7 @@ class SpineAndTailMap(Experiment):
         most, least = max(gains, key=gains.__getitem__), min(gains, key=gains.__getitem__)
         return self.render_explanation(
             measures,
+            axis=self.axis_name,
             reach=listed_words(words, "gain", labels, ("farther", "less far")),
             work=listed_words(words, "cost_ratio", labels, ("less work", "more")),
             supply=listed_words(words, "electrical_ratio", labels, ("less energy", "more")),
@@ -338,10 +363,10 @@ class SpineAndTailMap(Experiment):
         measures = self.measure(record)
         figure = captioned(
             draw_map(labels, QUANTITIES, words_of(measures), measures),
-            "What spine and tail change against a still axis, each with the best gait of a search of equal budget, "
-            "over conditions that differ from the base in one thing each. Points are medians over robots as built, "
-            "lines hold their 95 % intervals in every search. Ratios below one and differences above zero favour spine "
-            "and tail.",
+            f"What {self.axis_name} {'change' if self.has_tail else 'changes'} against a still axis, each with the "
+            "best gait of a search of equal budget, over conditions that differ from the base in one thing each. "
+            "Points are medians over robots as built, lines hold their 95 % intervals in every search. Ratios below "
+            f"one and differences above zero favour {self.axis_name}.",
         )
         return {"spine_and_tail_map": figure}
 

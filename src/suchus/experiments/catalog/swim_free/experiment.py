@@ -146,7 +146,8 @@ class SwimFree(Experiment):
     reynolds: float = 7000.0
     """Frequency times length squared over viscosity in the flow [-], chosen for what the cells carry."""
     flow_cycles: int = 4
-    """Cycles that are swum in the flow, from rest; speeds are of the last [-]."""
+    """Cycles that are swum in the flow, from rest. Speeds are of the settled cycles; where there are none, of the last,
+    and ``unsettled_...`` is 1 [-]."""
     correction: str = ""
     """File with factors on the section model, such as the ``correction.toml`` of a run in a flow. All swims by sections
     then have them, and a line says if they are at another Reynolds number; empty leaves the model as it is."""
@@ -214,6 +215,11 @@ class SwimFree(Experiment):
             check.that(not odd, f"in_flow names {', '.join(odd)}; there is {', '.join(swims)}")
             unknown = [name for name in self.spread if name not in _COEFFICIENT_FACTORS]
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_COEFFICIENT_FACTORS)}")
+
+    def for_verdicts(self) -> "SwimFree":
+        """Return the same question with swims as short as can answer."""
+        cycles = {name: int(least) for name, least in self.answer_minima.items()}
+        return replace(self, **{name: min(least, getattr(self, name)) for name, least in cycles.items()})
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
@@ -308,7 +314,7 @@ class SwimFree(Experiment):
             record.drop_vars([*WATER, "swims_in"]),
             self.robot,
             title="Swimming in a flow that is solved with the robot",
-            caption=f"The whole wave of (20) on the robot's own servos, in the {self.water} of water around it at "
+            caption=f"The whole wave on the robot's own servos, in the {self.water} of water around it at "
             f"f L² / ν = {self.reynolds:.0f}, from rest.",
         )
 
@@ -396,8 +402,8 @@ class SwimFree(Experiment):
             ghost=record.isel(run=labels.index(ghost)),
             labels=("joints as designed" if self._cable else "whole wave", ghost_label),
             title="Swimming in six degrees of freedom",
-            caption="Swimming at the surface by the wave of (20), limbs held back; half transparent, with "
-            f"{'stiffer joints' if self._cable else f'the {ghost_label}'}.",
+            caption=f"Swimming at the surface by a wave{', limbs held back' if self.robot.girdles else ''}; half "
+            f"transparent, with {'stiffer joints' if self._cable else f'the {ghost_label}'}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:

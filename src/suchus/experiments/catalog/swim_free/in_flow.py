@@ -16,6 +16,7 @@ from suchus.robot.design.water import Water
 from suchus.robot.motion import Gait
 from suchus.sim.land import Lake, Run, simulate
 from suchus.sim.land.waters import Slice, Space
+from suchus.sim.metrics import SettledMean, settled_mean, whole_cycles
 from suchus.swimming.coupling import Swim, earned_correction, judgement_text, residual_table
 from suchus.swimming.coupling.earned import LinkJudgement
 from suchus.swimming.water.field_samples import FieldWindow, VortexSampler, midline, midline_values, wake
@@ -335,6 +336,18 @@ def flow_speed(record: xr.Dataset, name: str) -> float:
     return float((last_cycle[-1] - last_cycle[0]) / (last_cycle.flow_time[-1] - last_cycle.flow_time[0]))
 
 
+def flow_settled_speed(record: xr.Dataset, name: str) -> SettledMean:
+    """Return the settled speed of a swim in the flow along its first heading; see ``metrics.settled_mean`` [m/s].
+
+    Where the swim is too short to be settled, or has broken off, the mean is the speed of its last cycle.
+    """
+    x = record.flow_centre_of_mass.sel(flow_run=name, xyz="x").values
+    time, period = record.flow_time.values.astype(float), float(record.flow_period)
+    speeds = np.diff(np.interp(period * np.arange(whole_cycles(time, period) + 1), time, x)) / period
+    speed = settled_mean(speeds)
+    return speed if speed.is_settled else speed._replace(mean=flow_speed(record, name))
+
+
 def flow_measures(record: xr.Dataset) -> Measures:
     """Return speeds in the flow, coupling errors, and the residual of the section model."""
     if "flow_run" not in record:
@@ -356,7 +369,10 @@ def flow_measures(record: xr.Dataset) -> Measures:
             measures["fin_cost"] = Measure(float(fin_swims.cost.min()), "-")
     for name in (str(label) for label in record.flow_run.values if FIN not in str(label)):
         ending = rung if name == "whole" else f"{rung}_{name}"
-        measures[f"speed_{ending}"] = Measure(flow_speed(record, name), "m/s")
+        speed = flow_settled_speed(record, name)
+        measures[f"speed_{ending}"] = Measure(speed.mean, "m/s")
+        measures[f"half_width_{ending}"] = Measure(0.5 * (speed.high - speed.low), "m/s")
+        measures[f"unsettled_{ending}"] = Measure(float(not speed.is_settled), "-")
         measures[f"servo_power_{ending}"] = Measure(
             float(last_cycle.flow_servo_power.sel(flow_run=name).sum("servo").mean()), "W"
         )

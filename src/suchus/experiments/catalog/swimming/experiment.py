@@ -4,7 +4,7 @@ import json
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import nan
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
@@ -139,6 +139,9 @@ class PlaneSwims(Experiment):
     """Cells per body length of these [-]."""
     tow: float = 4.0
     """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
+    extent: Literal["whole", "verdicts"] = "whole"
+    """How much swims: the whole, or what the verdicts need. Then neither other directions nor other readings of (20)
+    swim, and a rung of the ladder leaves out the swims of claims on which rungs before it disagree."""
     frames: int = 20
     """Pictures of each film, over one cycle [-], 1 to 200."""
     keep: str = ""
@@ -169,24 +172,33 @@ class PlaneSwims(Experiment):
             tow=2.0, frames=3,
         )  # fmt: skip
 
+    def for_verdicts(self) -> "PlaneSwims":
+        """Return the same question with the swims that its verdicts need, and films of fewer pictures."""
+        return replace(self, extent="verdicts", readings=(), frames=min(self.frames, 10))
+
     def simulate(self, progress: Progress = silent) -> SimulationResult:
-        """Swim tethered and free, in every motion, on every rung of the ladder."""
-        climb, printed_fit = self.ladder_setting(), self._fit(1)
-        wave_fit = climb.wave_fit
-        slices = swims(climb, "slice", motions(wave_fit.gait), staged(progress, "slice", 0.0, 0.3), frames=self.frames)
+        """Swim tethered and free, in every motion, on every rung of the ladder, as far as ``extent`` says."""
+        climb, printed_fit, slices = self.ladder_setting(), self._fit(1), dict[str, xr.Dataset]()
+        wave_fit, is_whole = climb.wave_fit, self.extent == "whole"
+
+        def swim_slices(names: Collection[str]) -> Swims:
+            """Return the slice's swims of some names, and those that the record shows."""
+            stage = staged(progress, "slice", 0.0, 0.3)
+            names = {*names, MOTIONS[0], "held"}
+            slices.update(swims(climb, "slice", motions(wave_fit.gait), stage, frames=self.frames, swim_names=names))
+            return slices
+
+        claims = None if is_whole else self.claims
+        rungs = run_ladder(climb, staged(progress, "", 0.3, 0.8), slices=swim_slices, claims=claims)
         held_swim, free_swim = slices["held"], slices[MOTIONS[0]].drop_vars(("course", "course_centre"))
-        printed_swim = self._held_swim("as printed", printed_fit, staged(progress, "as printed", 0.3, 0.35))
-        conditions = self._conditions(printed_fit, slices, staged(progress, "directions", 0.35, 0.45))
-        rungs = run_ladder(climb, staged(progress, "", 0.45, 0.92), slices=slices)
+        parts = [_prefixed(held_swim, "held"), _prefixed(free_swim, "free")]
+        if is_whole:
+            printed_swim = self._held_swim("as printed", printed_fit, staged(progress, "as printed", 0.8, 0.85))
+            printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
+            parts.insert(1, _prefixed(printed_forces, "printed"))
+        parts.append(self._conditions(printed_fit, slices, staged(progress, "directions", 0.85, 0.92)))
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
         drag = self._drag(float(free_swim.speed[-1]), staged(progress, "towed", 0.96, 1.0))
-        printed_forces = printed_swim[["thrust", "aside", "power", "cycle_thrust"]]
-        parts = [
-            _prefixed(held_swim, "held"),
-            _prefixed(printed_forces, "printed"),
-            _prefixed(free_swim, "free"),
-            conditions,
-        ]
         record = xr.merge([*parts, readings, rungs], join="exact")
         record["model_speed"] = swim(self.robot, wave_fit.gait).speed
         record["printed_model_speed"] = swim(self.robot, printed_fit.gait).speed
@@ -283,6 +295,8 @@ class PlaneSwims(Experiment):
     def _conditions(self, printed_fit: Fit, slices: Swims, progress: Progress) -> xr.Dataset:
         """Return the speed in every condition and cycle; the first three are the ladder's slices.
 
+        Of the extent ``verdicts`` there are only those that swam there.
+
         Args:
             printed_fit: gait in the printed direction.
             slices: swims of the ladder's slice, by motion.
@@ -294,8 +308,9 @@ class PlaneSwims(Experiment):
         ]
         motions_by_arm: dict[str, Motion] = dict(zip(ARMS[3:], (printed_fit.gait, *exact), strict=True))
         setting = self._setting(self.arm_cycles, cells=self.cells, reynolds=self.reynolds, is_held=False)
-        speeds = np.full((len(ARMS), max(self.arm_cycles, self.cycles)), np.nan)
-        for i, arm in enumerate(ARMS):
+        arms = ARMS if self.extent == "whole" else [arm for arm in MOTIONS if arm in slices]
+        speeds = np.full((len(arms), max(self.arm_cycles, self.cycles)), np.nan)
+        for i, arm in enumerate(arms):
             if arm in slices:
                 swim_record = slices[arm]
             else:
@@ -308,7 +323,7 @@ class PlaneSwims(Experiment):
                 )
             speeds[i, : swim_record.sizes["cycle"]] = swim_record.speed.values
         data = xr.Dataset({"arm_speed": (("arm", "cycle"), speeds, {"units": "m/s"})})
-        return data.assign_coords(arm=list(ARMS), cycle=np.arange(1, speeds.shape[1] + 1))
+        return data.assign_coords(arm=list(arms), cycle=np.arange(1, speeds.shape[1] + 1))
 
     def _readings(self, progress: Progress) -> tuple[xr.Dataset, str]:
         """Return the mean thrust of further readings, and a table of all of them."""
@@ -378,7 +393,8 @@ def _thrusts(record: xr.Dataset, held_swim: xr.Dataset, reading: str) -> Iterato
     cycle_thrusts = held_swim.cycle_thrust[1:]
     yield f"thrust_mean_{reading}", Measure(float(cycle_thrusts.mean()), "N/m")
     yield "thrust_scatter", Measure(float(np.ptp(cycle_thrusts.values)), "N/m")
-    yield "thrust_mean_as_printed", Measure(float(record.printed_cycle_thrust[1:].mean()), "N/m")
+    if "printed_cycle_thrust" in record:
+        yield "thrust_mean_as_printed", Measure(float(record.printed_cycle_thrust[1:].mean()), "N/m")
     for letter in record.reading.values:
         yield f"thrust_mean_{letter}", Measure(float(record.reading_thrust.sel(reading=letter)), "N/m")
 
@@ -448,7 +464,7 @@ def _envelope(free_swim: xr.Dataset, robot: Robot) -> Iterator[tuple[str, Measur
 
 def _condition_measures(record: xr.Dataset) -> Iterator[tuple[str, Measure]]:
     """Return the speed of the conditions that are no rung of the ladder, in their last cycle."""
-    for arm in ARMS[3:]:
+    for arm in (str(name) for name in record.arm.values if name not in MOTIONS):
         speeds = record.arm_speed.sel(arm=arm).values
         yield f"speed_{arm.replace(' ', '_')}", Measure(float(speeds[np.isfinite(speeds)][-1]), "m/s")
 

@@ -154,7 +154,7 @@ def draw_sides(record: xr.Dataset) -> Figure:
 
 
 def draw_forces(record: xr.Dataset) -> Figure:
-    """Draw forces over the last cycle, ours and as printed, and what the servos carry.
+    """Draw forces over the last cycle, ours and, if it swam, as printed, and what the servos carry.
 
     Args:
         record: record of the experiment ``swimming``.
@@ -167,6 +167,8 @@ def draw_forces(record: xr.Dataset) -> Figure:
             ("held", "head to tail", COLOURS["ours"]),
             ("printed", "as printed, tail to head", COLOURS["limbs_only"]),
         ):
+            if f"{name}_thrust" not in record:
+                continue
             thrust = record[f"{name}_thrust"]
             mean = float(record[f"{name}_cycle_thrust"][1:].mean())
             ax.plot(record[f"{name}_phase"], thrust, color=colour, label=f"{label}: {mean:+.1f}")
@@ -190,9 +192,10 @@ def draw_forces(record: xr.Dataset) -> Figure:
     return captioned(
         figure,
         "Fixed at the snout. Left: force along the body over the last cycle per metre of depth, for the wave from head "
-        "to tail and as printed; dashed and in numbers the means of all cycles but the first. Right: what the water "
-        "asks of the servos at their shafts, every section as high as the robot there, over each servo's limit (red); "
-        f"a flow that cannot pass over and under the body overstates it{_servo_note(record)}. On the right: "
+        f"to tail{' and as printed' * ('printed_thrust' in record)}; dashed and in numbers the means of all cycles but "
+        "the first. Right: what the water asks of the servos at their shafts, every section as high as the robot "
+        "there, over each servo's limit (red); a flow that cannot pass over and under the body overstates "
+        f"it{_servo_note(record)}. On the right: "
         f"{ALONG_THE_SKIN[0].lower()}{ALONG_THE_SKIN[1:]}",
     )
 
@@ -219,7 +222,7 @@ def draw_free(record: xr.Dataset) -> Figure:
         ax = axes[1, 0]
         ax.grid(True)
         colours = (COLOURS[role] for role in ("ours", "spine", "tail", "limbs_only", "ours", "limbs_only"))
-        for arm, colour, marker in zip(record.arm.values, colours, "os^vDX", strict=True):
+        for arm, colour, marker in zip(record.arm.values, colours, "os^vDX", strict=False):
             dashes = (0, (5, 2)) if str(arm).startswith("exact") else "-"
             label = f"{arm}, from head to tail" if str(arm) == "exact wave" else str(arm)
             ax.plot(

@@ -125,14 +125,18 @@ Swims = Mapping[str, xr.Dataset]
 
 
 def run_ladder(
-    climb: LadderSetting, progress: Progress, *, slices: Swims | None = None, claims: Collection[str] | None = None
+    climb: LadderSetting,
+    progress: Progress,
+    *,
+    slices: Callable[[Collection[str]], Swims] | None = None,
+    claims: Collection[str] | None = None,
 ) -> xr.Dataset:
     """Return the results of every rung; ``unable`` has the reason why a rung could not run, as JSON by its name.
 
     Args:
         climb: what is asked.
         progress: told the share that is done.
-        slices: the slice's swims with the commanded midline, where they were swum already.
+        slices: swims the slice's swims of some names with the commanded midline; None: as those of other rungs.
         claims: keys of the claims for whose words alone swims are swum. What none of them needs is left out: rungs that
             disagree stay at odds, whatever the next one says. None swims everything.
 
@@ -151,8 +155,11 @@ def run_ladder(
         results["sections"] = _attempt("sections", unable, lambda: _of_sections(climb, sections))
     commanded_motions = motions(climb.wave_fit.gait)
 
+    def needed() -> Collection[str]:
+        return SWIMS if claims is None else _needed_swims(_ladder(climb, results, unable), climb, claims)
+
     def resolve(rung: str, rung_motions: Mapping[str, Motion], stage: Progress) -> None:
-        swim_names = SWIMS if claims is None else _needed_swims(_ladder(climb, results, unable), climb, claims)
+        swim_names = needed()
         results[rung] = _attempt(
             rung, unable, lambda: _of_swims(climb, swims(climb, rung, rung_motions, stage, swim_names=swim_names))
         )
@@ -162,7 +169,7 @@ def run_ladder(
         check_speeds(climb.robot, climb.wave_fit.gait)
         resolve("slice", commanded_motions, staged(progress, "slice", 0.1, 0.35))
     else:
-        results["slice"] = _of_swims(climb, slices)
+        results["slice"] = _of_swims(climb, slices(needed()))
     if joint_midlines is not None:
         resolve("slice_taken", joint_midlines, staged(progress, "taken", 0.35, 0.6))
     resolve("space", commanded_motions, staged(progress, "three dimensions", 0.6, 1.0))

@@ -72,7 +72,7 @@ class Terrain(Experiment):
     """Low crawl, semi-erect walk, high walk without and with the IMU, and the robot that switches, on rough ground.
 
     ``low_crawl`` and ``high_walk`` walk open loop, ``semi_erect`` and ``high_walk_level`` answer the IMU. ``switching``
-    begins semi-erect and returns to it, ``thrifty``, where it walks too, begins crawling and returns to that; both go
+    begins semi-erect and returns to it, ``thrifty`` begins crawling and returns to that, where they walk; both go
     up when the belly touches. Each seed has its own bumps, the correlation lengths in turn, and its own place of step
     or stone, and a robot and a floor of its own, see ``land.Tolerances``. A run has fallen once it rolled or pitched by
     more than 60 degrees. It has met an obstacle once a front foot came to the bumps or the edge of the
@@ -109,11 +109,15 @@ class Terrain(Experiment):
     """Grounds on which postures turn into each other; the bumps are 30 mm high."""
     transitions: int = 6
     """Number of the six transitions between the three postures that are tried [-]."""
+    switching: bool = True
+    """Whether a robot that begins semi-erect and rises when its belly touches walks too."""
     thrifty: bool = False
     """Whether a robot that begins in the crawl and rises when its belly touches walks too."""
     seeds: int = 4
     """Greatest number of runs of each posture on each ground [-]. After half of them sampling ends if the claim on
     rough grounds has a word by then."""
+    early_end: bool = True
+    """Whether sampling on rough grounds ends after half of the seeds if the claim has a word by then."""
     flat_robots: int = 12
     """Number of robots, each built of the design, of which the cost on even ground is compared [-]; at least six are
     needed for an interval of the median."""
@@ -139,6 +143,10 @@ class Terrain(Experiment):
             check.whole("flat_robots", 1, 1000)
             check.number("walked", 0.5, 3600.0, "s")
             check.number("timestep", 1e-5, control_period(self.robot), "s")
+
+    def for_verdicts(self) -> "Terrain":
+        """Return the same question without the robot that switches, and with fewer robots on even ground."""
+        return replace(self, switching=False, flat_robots=min(self.flat_robots, 6))
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""
@@ -217,19 +225,12 @@ class Terrain(Experiment):
                 )
                 measures[f"kept_{kind}_{arm}"] = Measure(float(kind_record.forward.mean() / even_forward), "-")
                 measures[f"met_{kind}_{arm}"] = Measure(float(kind_record.met.mean()), "-")
-        low_grounds = record.isel(
-            ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _HEIGHT_TOLERANCE)
-        )
-        share = _share_of_best(record)
         return measures | {
             **_flat(record),
             **_rough_measures(rough_record, record),
             **_falls(rough_record),
-            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
-            "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
-            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
+            **(_switching(record) if "switching" in record.arm.values else {}),
             "grounds": Measure(float(record.sizes["ground"]), "-"),
-            "switching_falls_up_to_40_mm": Measure(float(low_grounds.fell.sel(arm="switching").sum()), "-"),
             **_transitions(record),
         }
 
@@ -275,8 +276,10 @@ class Terrain(Experiment):
             "semi_erect": (self.semi_erect, Walking(attitude=level)),
             "high_walk": (self.high_walk, Walking()),
             "high_walk_level": (self.high_walk, Walking(attitude=level)),
-            "switching": (self.semi_erect, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=1))),
         }
+        if self.switching:
+            rule = SwitchRule(ladder=ladder, home=1)
+            arms["switching"] = (self.semi_erect, Walking(attitude=level, switching=rule))
         if self.thrifty:
             arms["thrifty"] = (self.crawl, Walking(attitude=level, switching=SwitchRule(ladder=ladder, home=0)))
         return arms
@@ -314,7 +317,7 @@ class Terrain(Experiment):
             progress: called with the fraction that is done.
             names: conditions that walk; all if empty.
         """
-        looks, parts = planned_looks(self.seeds), []
+        looks, parts = planned_looks(self.seeds) if self.early_end else (self.seeds,), []
         for first, count in pairwise((0, *looks)):
             stage = staged(progress, "", first / looks[-1], count / looks[-1])
             parts.append(self._walks_of_seeds(range(first, count), stage, names))
@@ -596,6 +599,22 @@ def _transitions(record: xr.Dataset) -> Measures:
             for surface in record.surface.values
         },
         {"transition_tilt": Measure(float(record.change_tilt.max()), "rad")},
+    )
+
+
+def _switching(record: xr.Dataset) -> Measures:
+    """Return how far the switching robot gets beside the best single posture, and how often it falls."""
+    share = _share_of_best(record)
+    low_grounds = record.isel(
+        ground=np.flatnonzero(record.height.values <= 0.04 * float(record.size_of_robot) + _HEIGHT_TOLERANCE)
+    )
+    return Measures(
+        {
+            "switching_share_of_best_worst": Measure(float(share.min()), "-"),
+            "switching_worst_height": Measure(float(record.height[int(share.argmin("ground"))]), "m"),
+            "switching_grounds_within_5_percent": Measure(float((share >= 0.95).sum()), "-"),
+            "switching_falls_up_to_40_mm": Measure(float(low_grounds.fell.sel(arm="switching").sum()), "-"),
+        }
     )
 
 

@@ -56,6 +56,7 @@ class Turning(Experiment):
         "tightest_bend_high_walk",
         "tightest_both_semi_erect",
     )
+    reproduces: ClassVar[bool] = False
     needs = ("limbs",)
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 10, "bends": 4}
 

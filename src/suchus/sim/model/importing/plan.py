@@ -437,7 +437,9 @@ def _remarks_on_front(plane: Plane, reference_axis: str) -> list[str]:
         plane: the mirror plane.
         reference_axis: reference axis of the file, from which headings count.
     """
-    heading_text = f"the file's {reference_axis} axis turned left by {plane.heading % 360:g} degrees"
+    axis_text, heading = f"the file's {reference_axis} axis", round(plane.heading, 6) % 360
+    directions = {0.0: f"along {axis_text}", 180.0: f"against {axis_text}"}
+    heading_text = directions.get(heading, f"{axis_text} turned left by {heading:g} degrees")
     opposite_heading = (plane.heading + 180) % 360
     if plane.certain:
         remarks = [f"Front: {heading_text}, as names or options say (--front, --heading)."]

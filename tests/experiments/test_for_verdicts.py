@@ -1,0 +1,72 @@
+"""The forms that `suchus reproduce` runs: judged as the full ones are, and complete without what they leave out."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from suchus.article.verdict import judge
+from suchus.experiments.catalog import EXPERIMENTS
+from suchus.visual.figures import styled
+
+NAMES = [name for name in EXPERIMENTS if EXPERIMENTS[name].for_verdicts() != EXPERIMENTS[name]]
+
+
+def told_disturbances(record: xr.Dataset) -> xr.Dataset:
+    is_told = record.disturbance.isin(EXPERIMENTS["feedback"].for_verdicts().disturbances)
+    disturbed = [name for name in record.data_vars if "disturbance" in record[name].dims]
+    return record.assign({name: record[name].where(is_told) for name in disturbed})
+
+
+def needed_swims(record: xr.Dataset) -> xr.Dataset:
+    printed = [name for name in record.variables if str(name).startswith("printed_") and name != "printed_model_speed"]
+    kept = record.drop_vars(printed)
+    speeds = kept.ladder_speed.where(kept.ladder_motion == "trunk and tail")
+    is_theory = kept.rung.isin(["resistive", "reactive", "sections"])
+    return kept.isel(arm=[0], reading=[]).assign(ladder_speed=kept.ladder_speed.where(is_theory, speeds))
+
+
+SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
+    "bipedal_reach": lambda record: record.drop_dims("direction"),
+    "feedback": told_disturbances,
+    "joint_faults": lambda record: record.isel(joint=slice(0, 4)),
+    "swimming": needed_swims,
+    "terrain": lambda record: record.drop_sel(arm="switching"),
+}
+"""What is left of a quick form's record, by experiment."""
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_form_for_verdicts_answers_and_is_judged(name):
+    short = EXPERIMENTS[name].for_verdicts()
+    assert (short.unjudged(), short.too_short()) == ("", "")
+    assert short.claims == EXPERIMENTS[name].claims
+    assert short.for_verdicts() == short
+
+
+@pytest.mark.parametrize("name", SHORTENED)
+def test_what_is_left_out_changes_no_verdict_and_is_missed_nowhere(name, quick_outcome):
+    outcome, short = quick_outcome(name), EXPERIMENTS[name].quick().for_verdicts()
+    record = SHORTENED[name](outcome.record)
+    measures = short.measure(record)
+    numbers, full = ({key: m.value for key, m in group.items()} for group in (measures, outcome.measures))
+    assert sum(np.isfinite([*numbers.values()])) < sum(np.isfinite([*full.values()]))
+    for rule in short.rules():
+        judged, fully_judged = (judge(rule, given, unable=short.unable(record)) for given in (numbers, full))
+        assert judged.verdict == fully_judged.verdict
+        assert rule.rungs or judged.why == fully_judged.why
+    assert "nan" not in short.explain(numbers).split()
+    with styled():
+        assert short.draw(replace(outcome, record=record, measures=measures))
+
+
+def test_maps_keep_their_ends():
+    whole = EXPERIMENTS["displacement"]
+    short = whole.for_verdicts()
+    for name in ("strokes", "bends", "pitches", "phases"):
+        values = getattr(short, name)
+        assert {values[0], values[-1]} == {getattr(whole, name)[0], getattr(whole, name)[-1]}
+        assert set(values) <= {*getattr(whole, name)}
+        assert len(values) == 3
