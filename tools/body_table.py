@@ -1,4 +1,4 @@
-"""Try every experiment and tool on every body of the catalog and of files, for the tables in docs/land_evidence.md.
+"""Try every experiment and tool on every body of the catalog and of files, for the tables in docs/bodies_evidence.md.
 
 Usage: python tools/body_table.py [--only ROW ...] [--bodies BODY ...] [--anew] [--table]
 
@@ -37,7 +37,7 @@ from suchus.robot.gaits import default_gait
 from suchus.robot.robots import ROBOTS
 
 ROOT = Path(__file__).parents[1]
-NAME, PAGE = "bodies", ROOT / "docs" / "land_evidence.md"
+NAME, PAGE = "bodies", ROOT / "docs" / "bodies_evidence.md"
 MARKS = "<!-- bodies: made by tools/body_table.py -->\n", "<!-- /bodies -->\n"
 LEAST = {
     "crawl_stability": "--cycles 1 --repeats 1",

@@ -1,4 +1,4 @@
-"""Walks of the article's robot on servos as they were identified, into docs/motion_evidence.md and docs/pictures.
+"""Walks of the article's robot on servos as they were identified, into docs/servos_evidence.md and docs/pictures.
 
 Four robots: with the servos that the catalog used to have; as in the catalog, with the mean of the identified servos;
 with inertia and friction of an STS3215 at 7.4 V and the gains of the catalog; and with gains from inertia, delay and
@@ -34,7 +34,7 @@ from suchus.sim.metrics import (
 )
 from suchus.sim.model.inverse import held_inertias
 
-PAGE = Path(__file__).parents[1] / "docs" / "motion_evidence.md"
+PAGE = Path(__file__).parents[1] / "docs" / "servos_evidence.md"
 PICTURE = PAGE.parent / "pictures" / "identified_servos.png"
 BLOCK = re.compile(r"(?<=<!-- walks: made by tools/identified_servos.py -->\n).*?(?=<!-- /walks -->)", re.DOTALL)
 SERVO = "STS3215 7.4 V, m1"

@@ -36,6 +36,19 @@ def test_the_table_has_twenty_rows_and_the_picture_every_wing():
     assert {wing for wing in wings() if f" {wing} " not in picture} == set()
 
 
+@pytest.mark.parametrize("library", ["mujoco", "numba", "matplotlib"])
+def test_libraries_are_imported_where_the_page_says(library):
+    (cell,) = re.findall(rf"^\| `{library}` \| (.*) \|$", PAGE, re.M)
+    places = [name for name in re.findall(r"`([\w.]+)`", cell) if " " not in name]
+    importing = [
+        ".".join(file.relative_to(SOURCE).with_suffix("").parts)
+        for file in SOURCE.rglob("*.py")
+        if re.search(rf"^\s*(?:import|from) {library}\b", file.read_text(encoding="utf-8"), re.M)
+    ]
+    assert [module for module in importing if not any(f"{module}.".startswith(f"{place}.") for place in places)] == []
+    assert [place for place in places if not any(f"{module}.".startswith(f"{place}.") for module in importing)] == []
+
+
 @pytest.mark.parametrize("wing", wings())
 def test_each_wing_says_what_it_is_for_and_where_to_start(wing):
     text = ast.get_docstring(ast.parse((SOURCE / wing / "__init__.py").read_text(encoding="utf-8"))) or ""

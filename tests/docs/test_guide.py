@@ -65,6 +65,7 @@ def lacks(text):
 
 
 GUIDE = menu()["Guide"]
+EVIDENCE = [name for name in menu()["Evidence"] if name.endswith("_evidence")]
 
 
 def test_the_guide_has_few_pages_and_every_page_has_its_tab():
@@ -79,6 +80,13 @@ def test_the_guide_has_few_pages_and_every_page_has_its_tab():
 @pytest.mark.parametrize("name", GUIDE)
 def test_a_page_begins_with_what_one_can_do_a_picture_and_a_command(name):
     assert lacks(page(name)) == []
+
+
+@pytest.mark.parametrize("name", EVIDENCE)
+def test_a_page_of_evidence_begins_with_what_was_asked_and_found(name):
+    start = page(name).partition("\n## ")[0]
+    assert re.search(r"^\*\*Asked\.\*\* .*?^\*\*Found\.\*\*\s+\S", start, re.MULTILINE | re.DOTALL)
+    assert "```sh\n" in start
 
 
 def test_a_page_that_begins_otherwise_is_noticed():

@@ -16,7 +16,7 @@ def tool():
 
 def test_the_high_walk_of_the_page_is_that_of_today(tool):
     """Renew with ``python tools/identified_servos.py``."""
-    page = (ROOT / "docs" / "motion_evidence.md").read_text()
+    page = (ROOT / "docs" / "servos_evidence.md").read_text()
     (task,) = [task for task in tool["TASKS"] if task.name == "high walk"]
     rows = {
         cells[1]: [float(cell) for cell in cells[2:]]

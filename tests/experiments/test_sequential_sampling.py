@@ -69,6 +69,17 @@ def test_starts_with_and_without_sharing_end_at_the_first_look_that_decides(gain
     assert ends == pytest.approx([low, high])
 
 
+def test_without_an_early_end_all_starts_are_sampled_and_their_interval_is_that_of_one_look(monkeypatch):
+    gains = np.linspace(0.05, 0.2, 16)
+    monkeypatch.setattr(Feedback, "_simulate_starts", starts(gains))
+    question = replace(EXPERIMENTS["feedback"], sharing_starts=16, early_end=False)
+    record = question._sharing_record(["closed_noisy", "isolated_noisy"], lambda stage, fraction: None)
+    assert record.sizes["start"] == 16
+    found = sharing_measures(record, question.gait, question.hold)
+    ends = [found[f"way_gain_shared{end}"].value for end in ("_low", "_high")]
+    assert ends == pytest.approx(median_interval(gains, confidence=0.95))
+
+
 def rough_walks(erect):
     """Return a stand-in for ``Terrain._walks_of_seeds``: how far the erect walk gets on each seed, if the crawl 1 m."""
 
@@ -97,6 +108,16 @@ def test_walks_on_rough_ground_end_at_the_first_look_that_decides(erect, count, 
     ahead = sum(8 * (way > 1.0) for way in erect[:count])
     ends = [found[f"erect_open_loop_ahead_share{end}"].value for end in ("_low", "_high")]
     assert ends == pytest.approx(fraction_interval(ahead, 8 * count, confidence=0.975))
+
+
+def test_without_an_early_end_all_seeds_walk_on_rough_ground(monkeypatch):
+    erect = [1.2, 1.2, 0.8, 0.8]
+    monkeypatch.setattr(Terrain, "_walks_of_seeds", rough_walks(erect))
+    record = replace(EXPERIMENTS["terrain"], early_end=False)._ground_record(lambda stage, fraction: None)
+    assert record.sizes["seed"] == 4
+    found = _rough_measures(_rough_grounds(record), record)
+    ends = [found[f"erect_open_loop_ahead_share{end}"].value for end in ("_low", "_high")]
+    assert ends == pytest.approx(fraction_interval(16, 32, confidence=0.95))
 
 
 def test_without_a_claim_on_rough_ground_half_of_the_seeds_suffice(monkeypatch):

@@ -19,7 +19,7 @@ from pages.passages import put  # noqa: E402
 from pages.stated import kept as stated_numbers  # noqa: E402
 from pages.stated import text_of  # noqa: E402
 
-PAGE = ROOT / "docs" / "motion_evidence.md"
+PAGE = ROOT / "docs" / "servos_evidence.md"
 
 
 def test_its_servos_are_those_that_are_sold_and_nothing_else_became_another():

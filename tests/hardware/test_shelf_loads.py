@@ -20,7 +20,7 @@ from pages.passages import put  # noqa: E402
 from pages.stated import kept as stated_numbers  # noqa: E402
 from pages.stated import text_of  # noqa: E402
 
-PAGE = ROOT / "docs" / "motion_evidence.md"
+PAGE = ROOT / "docs" / "servos_evidence.md"
 OWN = ("belly_crawl", "low_crawl", "limbs_only", "limbs_tail_lifted", "spine_only", "tail_drag", "tail_still",
        "semi_erect", "high_walk")  # fmt: skip
 """Gaits that were made for the robot."""

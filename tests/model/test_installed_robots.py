@@ -25,7 +25,7 @@ FILES = {
         for name in (*("a2", "aliengo", "b2", "go1", "go2", "hyqreal1", "hyqreal2", "mini_cheetah", "pegasus", "spot"),)
     },
 }
-"""Path from the folder in which the package lies; bodies that are refused stand in ``docs/land_evidence.md``."""
+"""Path from the folder in which the package lies; bodies that are refused stand in ``docs/bodies_evidence.md``."""
 
 
 @pytest.fixture(params=FILES)

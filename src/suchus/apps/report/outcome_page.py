@@ -35,7 +35,7 @@ MARKS = {
 }
 """Sign of each verdict, for those who do not see its colour."""
 ANSWER_SENTENCES = 2
-"""Sentences of an explanation that are the answer, beside the first figure; the others stand below the figures [-]."""
+"""Sentences of an explanation that are the answer, beside the hero; the others are folded below the figures [-]."""
 ARTICLE_ROBOTS = ("", "caiman", "floating_caiman")
 """Robots of the article, and none: pages of other robots name no part of the article."""
 DIGEST_LENGTH = 16

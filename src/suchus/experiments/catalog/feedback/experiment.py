@@ -128,6 +128,8 @@ class Feedback(Experiment):
     sharing_starts: int = 32
     """Greatest number of random initial limb phases with and without sharing [-]. After half of them sampling ends if
     the claim has a word by then."""
+    early_end: bool = True
+    """Whether sampling with and without sharing ends after half of the starts if the claim has a word by then."""
     judged_cycles: int = 7
     """Simulated duration of each start whose converged fraction is judged [cycle]. The slowest of 72 starts converges
     after 3.5 cycles, and the wrong sign has as long."""
@@ -311,11 +313,12 @@ class Feedback(Experiment):
             laws: names of ``STARTS``.
             progress: callback that gets the finished fraction.
         """
-        looks = planned_looks(min(self.sharing_starts, self.starts))
+        count = min(self.sharing_starts, self.starts)
+        looks = planned_looks(count) if self.early_end else (count,)
         parts: list[xr.Dataset] = []
-        for first, count in pairwise((0, *looks)):
-            stage = staged(progress, "", first / looks[-1], count / looks[-1])
-            parts.append(self._simulate_starts(laws, range(first, count), self.cycles, stage)[0])
+        for first, end in pairwise((0, *looks)):
+            stage = staged(progress, "", first / count, end / count)
+            parts.append(self._simulate_starts(laws, range(first, end), self.cycles, stage)[0])
             record = xr.concat(parts, "start", join="exact")
             record["sharing_looks"] = (
                 (),

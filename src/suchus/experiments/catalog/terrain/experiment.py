@@ -116,6 +116,8 @@ class Terrain(Experiment):
     seeds: int = 4
     """Greatest number of runs of each posture on each ground [-]. After half of them sampling ends if the claim on
     rough grounds has a word by then."""
+    early_end: bool = True
+    """Whether sampling on rough grounds ends after half of the seeds if the claim has a word by then."""
     flat_robots: int = 12
     """Number of robots, each built of the design, of which the cost on even ground is compared [-]; at least six are
     needed for an interval of the median."""
@@ -315,7 +317,7 @@ class Terrain(Experiment):
             progress: called with the fraction that is done.
             names: conditions that walk; all if empty.
         """
-        looks, parts = planned_looks(self.seeds), []
+        looks, parts = planned_looks(self.seeds) if self.early_end else (self.seeds,), []
         for first, count in pairwise((0, *looks)):
             stage = staged(progress, "", first / looks[-1], count / looks[-1])
             parts.append(self._walks_of_seeds(range(first, count), stage, names))
