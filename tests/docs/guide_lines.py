@@ -68,7 +68,6 @@ ASSUMED = {
                     "out/train/velocity/velocity.npz out/train/velocity_still_axis/velocity_still_axis.npz",
     "terrain": "my_robot.toml",
     "faults": "out/optimise/fault_strider/result/outcome.json",
-    "terrain": "my_robot.toml",
     "build_one": "my_robot.toml my_gait.toml my_servos.toml export/caiman_size/robot.toml",
 }  # fmt: skip
 """Files that a reader of a page has when a line names them: of his own, or of earlier and longer lines."""
