@@ -236,6 +236,44 @@ def test_the_recorded_power_of_the_servos_is_their_work():
     assert (record.servo_peak_torque.values[1:] >= np.sqrt(square[1:]) - 1e-12).all()
 
 
+@cache
+def above_floor(depth):
+    """A robot in space so far above a floor [m]; None is no floor."""
+    robot = suchus.ROBOTS["floating_caiman"]
+    water = Space(cells=54, reynolds=1500.0, floor=depth)
+    run = Run(robot=robot, gait=swim_of(robot, frequency=1.0), water=water, control=Swimming(ramp=0.2))
+    return Swim(run, 0.1)
+
+
+def test_a_floor_near_a_robot_raises_its_added_mass_and_a_far_one_hardly():
+    free, far, near = (np.diag(above_floor(depth)._start_added)[1] for depth in (None, 0.6, 0.1))
+    assert far == pytest.approx(free, rel=0.01)
+    assert near > 1.05 * free
+
+
+def test_the_floor_is_at_rest_in_the_world_below_a_grid_that_travels():
+    swim = above_floor(0.1)
+    for _ in range(3):
+        swim.step(0.1)
+    grid, side = swim.sim.setup.grid, swim.sim.setup.sides.low
+    assert grid.origin[2] == pytest.approx(-0.1)
+    drift = np.array(swim.sim.pose(swim.run.robot.name).velocity)
+    assert np.hypot(*drift[:2]) > 1e-5
+    assert side.wall_velocity(swim.time, 3) == pytest.approx(tuple(-drift[:2]))
+    assert swim.series.residual[-1][1] < 0.02
+
+
+def test_a_floor_that_cannot_be_is_refused():
+    with pytest.raises(InvalidDesign, match=r"fewer than 2 cells of water .* Give a floor of at least 0\.0694 m"):
+        above_floor(0.03)
+    with pytest.raises(InvalidDesign, match=r"slice\.floor is for a body in space"):
+        Slice(cells=64, floor=0.3)
+    with pytest.raises(InvalidDesign, match=r"space\.floor is below a body that stays in its plane"):
+        Space(cells=64, floor=0.3, linked=True)
+    with pytest.raises(InvalidDesign, match=r"space\.floor is -1"):
+        Space(cells=64, floor=-1.0)
+
+
 @pytest.mark.parametrize(("cells", "said"), [(40, True), (128, False)])
 def test_a_slice_that_is_much_thicker_than_the_body_is_said(cells, said):
     with warnings.catch_warnings(record=True) as told:

@@ -90,6 +90,7 @@ def test_swims_that_begin_with_two_ramps_are_too_short_to_be_settled_or_agree():
 
 
 def test_the_rung_has_the_settings_that_were_asked_for():
+    assert water_of("space", 64, 1e3, 0.0, floor=0.3) == Space(cells=64, reynolds=1e3, floor=0.3)
     assert water_of("slice", 64, 1e3, 0.1) == Slice(cells=64, reynolds=1e3)
     assert water_of("space", 64, 1e3, 0.1) == Space(cells=64, reynolds=1e3, tail_height=0.1)
     assert water_of("space", 64, 1e3, 0.0, linked=True) == Space(cells=64, reynolds=1e3, linked=True)
@@ -120,6 +121,9 @@ def test_impossible_settings_are_refused():
     for rung in ("slice", "sections"):
         with pytest.raises(InvalidDesign, match=f'linked is of swims in space, and water is "{rung}"'):
             replace(one, water=rung, linked=True)
+    for changes in ({"water": "slice"}, {"water": "space", "linked": True}):
+        with pytest.raises(InvalidDesign, match="floor is below a body that swims in its plane in space"):
+            replace(one, floor=0.3, **changes)
     with pytest.raises(InvalidDesign, match=r"tail_height raises its tail to 0.1 m; leave out one"):
         replace(one, water="space", linked=True, tail_height=0.1)
 

@@ -50,6 +50,9 @@ class _Resolved:
     linked: bool = False
     """In space: whether each piece of the robot moves as its own joints do and the root in all six ways, so that limbs
     paddle and the axis may leave its plane; there is no mirror then, and twice as much water."""
+    floor: float | None = None
+    """In space: depth of a lake's floor below the middle of the body, which then has no mirror and twice as much water;
+    None is a flow far from any floor [m]."""
     beside: float | None = None
     """In space: water beside the widest swing, to each side; None for that of a commanded swim [body length]."""
 
@@ -65,7 +68,15 @@ class _Resolved:
             check.number("tail_height", 0.0, 1.0, "m")
             if self.beside is not None:
                 check.number("beside", 0.0, 3.0, "body lengths")
-            space_options = [option for option in ("tail_height", "limbs", "linked", "beside") if getattr(self, option)]
+            if self.floor is not None:
+                check.number("floor", 1e-3, 100.0, "m")
+            space_options = [
+                option for option in ("tail_height", "limbs", "linked", "floor", "beside") if getattr(self, option)
+            ]
+            check.that(
+                not (self.linked and self.floor is not None),
+                f"{name}.floor is below a body that stays in its plane, and with linked it may leave it: leave out one",
+            )
             check.that(
                 not (self.linked and (self.limbs or self.tail_height)),
                 f"{name}.linked has all of the robot's own pieces in the water, its limbs among them and no raised "

@@ -16,10 +16,11 @@ A is symmetric. Each correction updates A with the observed response of the wate
 
 import warnings
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import gcd, isfinite, prod
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import xarray as xr
@@ -83,6 +84,8 @@ It is chosen: with less, the next guess of the acceleration would be more than t
 _MAX_ROUNDS, _ROUND_TOLERANCE = 10, 1e-4
 """Greatest number of rounds for the explicit part of the added mass, which the robot's own matrix cannot hold; and the
 relative change of the acceleration at which they have converged [-]."""
+MIN_FLOOR_CELLS = 2.0
+"""Least water between a body and the floor [cells]; with less the grid does not resolve the film between them."""
 MAX_SLICE_CELLS = 4096
 """Cells per body length above which no more are proposed [-]."""
 _CHANGING = {
@@ -220,6 +223,20 @@ def incommensurate_steps(max_steps: int, period: int) -> int:
     fair = [n for n in range(max(max_steps - 3, 1), max_steps + 1) if gcd(n, period) == 1]
     fast = [n for n in fair if max_steps > period and 1 < n % period < period - 1]
     return max(fast or fair or [max_steps])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LakeFloor(flow.Side):
+    """A floor with friction that is at rest in the world, below a grid that travels with a body over it."""
+
+    pose: Callable[[float], flow.Pose]
+    """Pose of the body that the grid travels with, at a time [s]."""
+
+    travels: ClassVar[tuple[bool, bool]] = False, True
+
+    def wall_velocity(self, time: float, ndim: int) -> tuple[float, ...]:
+        """Return the velocity of the floor in the frame of the grid; see ``flow.Side``."""
+        return tuple(-component for component in self.pose(time).velocity[: ndim - 1])
 
 
 def thickening(outline: Outline, bluntness: float, cells: int) -> float:
@@ -366,6 +383,29 @@ class Swim:
         )  # fmt: skip
 
     @property
+    def _floor(self) -> float | None:
+        """Depth of the floor below the body's plane; None without a floor [m]."""
+        return self.water.floor if isinstance(self.water, Space) else None
+
+    def _check_floor(self, height: float) -> None:
+        """Refuse a floor that the body touches, or that the grid cannot part from it.
+
+        Args:
+            height: greatest half-height of the body [m].
+
+        Raises:
+            InvalidDesign: with the depth that would do.
+        """
+        assert self._floor is not None
+        min_depth = height + MIN_FLOOR_CELLS * self.run.robot.length / self.water.cells
+        if self._floor < min_depth:
+            raise InvalidDesign(
+                f"the floor is {self._floor:.3g} m below the middle of robot {self.run.robot.name!r}, whose "
+                f"half-height is {height:.3g} m: fewer than {MIN_FLOOR_CELLS:g} cells of water are between them. "
+                f"Give a floor of at least {min_depth:.3g} m, or more cells than {self.water.cells}."
+            )
+
+    @property
     def _linked(self) -> bool:
         """Whether each link has its own pose and the root moves in space."""
         return isinstance(self.water, Space) and self.water.linked
@@ -404,7 +444,11 @@ class Swim:
             shape: flow.SpaceShape | flow.Midline = self.chain.body(self.path)
             motion = self.chain.motion(self.path)
         else:
-            grid = setting.grid(robot.length, swing, float(self.half_height.max()))
+            height = float(self.half_height.max())
+            grid = setting.grid(robot.length, swing, height)
+            if self._floor is not None:
+                self._check_floor(height)
+                grid = setting.grid_above_floor(robot.length, swing, height, self._floor)
             spine_body = self.chain.body(self.path, axes, self._min_half_width, self.half_height)
             motion, shape = self.chain.motion(self.path, axes, self._min_half_width), spine_body
             if self.water.limbs:
@@ -416,6 +460,8 @@ class Swim:
         setting.check_thickness(robot, shape)
         body = flow.Body(shape=shape, motion=motion, name=robot.name)
         sides = flow.Sides(low=flow.Mirror()) if axes == 3 and not self._linked else flow.Sides()
+        if self._floor is not None:
+            sides = flow.Sides(low=LakeFloor(pose=motion))
         return flow.Setup(
             grid=grid, viscosity=self.viscosity, density=DENSITY, bodies=(body,), follow=robot.name, sides=sides,
             follow_axes=(True,) * 3 if self._linked else (True, True), tolerance=setting.largest_divergence(),

@@ -57,7 +57,9 @@ class SwimSetting:
     3.5 by 2."""
     blunt: float = 0.0
     """In the plane: least half-width; where the body is thinner it is thickened, its ends made round [cell]. With 1.75
-    cells the force has the least noise; with 0 the body stays as it is."""
+    cells the force has the least noise; with 0 the body stays as it is. Of the caiman held at its snout, at 80 cells a
+    length, the noise along the body falls from 7.3 to 1.3 %, and the mean thrust by half; with 160 cells it is 2.7 %
+    without, with 240 cells 1.6 %."""
     beside: float = MARGIN_BESIDE
     """In space: water beside the widest swing, to each side [body length]."""
     behind: float = MARGIN_BEHIND
@@ -160,6 +162,24 @@ class SwimSetting:
             cell=length / self.cells,
         )
         return replace(grid, origin=(*grid.origin[:2], 0.0))  # what it grew above and below lies above
+
+    def grid_above_floor(self, length: float, swing: float, height: float, floor: float) -> flow.Grid:
+        """Return the cells around a whole body in space that swims in its plane above a floor.
+
+        Args:
+            length: length of the body [m].
+            swing: greatest displacement to a side [m].
+            height: greatest half-height of the body [m].
+            floor: depth of the floor below the middle of the body [m].
+        """
+        cell, lateral_reach = length / self.cells, swing / length + _DRIFT_MARGIN + self.beside
+        return flow.Grid.covering(
+            (-MARGIN_AHEAD * length, (1.0 + self.behind) * length),
+            (-lateral_reach * length, lateral_reach * length),
+            (-floor, height + MARGIN_ABOVE * length),
+            cell=cell,
+            sides=flow.Sides(low=flow.Wall()),
+        )
 
     def check_thickness(self, robot: Robot, shape: flow.Shape | flow.SpaceShape) -> None:
         """Refuse cells in space so coarse that a robot is nowhere thick enough for them.

@@ -159,6 +159,9 @@ class SwimFree(Experiment):
     goes in all six ways. Without it there is the body alone, which bends in its plane, and half of the water."""
     tail_height: float = 0.0
     """In space: height to which the last third of the tail is raised, as a fin as thick as it is; 0 for none [m]."""
+    floor: float = 0.0
+    """In space: depth of the lake's floor below the middle of the body, which stays in its plane; 0 is far from any
+    floor [m]."""
     keep: str = ""
     """Folder in which swims in a flow, robot and water, are kept as far as they have come: an interrupted run goes on
     from there to the same bytes; empty keeps nothing."""
@@ -200,6 +203,13 @@ class SwimFree(Experiment):
                     "of; leave it out",
                 )
             check.number("tail_height", 0.0, 1.0, "m")
+            check.number("floor", 0.0, 100.0, "m")
+            if self.floor:
+                check.that(
+                    self.water == "space" and not self.linked,
+                    f"floor is below a body that swims in its plane in space, and water is {self.water!r}"
+                    f'{" with linked" if self.linked else ""}; take water="space" without linked, or leave out floor',
+                )
             if self.linked:
                 check.that(
                     self.water == "space",
@@ -303,7 +313,9 @@ class SwimFree(Experiment):
         """Return the runs in a flow; none on the rung of sections."""
         if self.water == "sections":
             return []
-        water = water_of(self.water, self.cells, self.reynolds, self.tail_height, linked=self.linked)
+        water = water_of(
+            self.water, self.cells, self.reynolds, self.tail_height, linked=self.linked, floor=self.floor or None
+        )
         runs = flow_runs(self._joints, motions, ("whole", *self.in_flow), water)
         return [*runs, *fin_runs(runs[0], self.fin)]
 

@@ -58,9 +58,10 @@ def flow_runs(
     ]
 
 
-def is_linked(run: Run) -> bool:
-    """Return whether a run's flow is around all pieces of the robot, each with its own pose."""
-    return isinstance(run.solved_flow, Space) and run.solved_flow.linked
+def is_filmed(run: Run) -> bool:
+    """Return whether a run is filmed: in space only the half of a body above a plane of symmetry is."""
+    flow = run.solved_flow
+    return not (isinstance(flow, Space) and (flow.linked or flow.floor is not None))
 
 
 def passive_joints(robot: Robot) -> list[str]:
@@ -147,7 +148,7 @@ def swim_in_flow(runs: Sequence[Run], cycles: int, keep: str, progress: Progress
     records, film_data = [], xr.Dataset()
     for number, (run, swim) in enumerate(zip(runs, swims, strict=True)):
         stage = staged(progress, f"{run.label} in the flow", number / len(runs), (number + 1) / len(runs))
-        film = _Film(swim, cycles) if number == 0 and not is_linked(run) else None
+        film = _Film(swim, cycles) if number == 0 and is_filmed(run) else None
         with suppress(*([Diverged] if number else [])):
             swim.go(
                 swim.ticks * swim.stepper.period, progress=stage, watch=film,
@@ -491,8 +492,19 @@ def _factor(row: Mapping[str, float], name: str) -> str:
     return f"{row[name]:.2f}" + (f" ({lower_bound:.2f} to {upper_bound:.2f})" if lower_bound <= upper_bound else "")
 
 
-def water_of(rung: str, cells: int, reynolds: float, tail_height: float, *, linked: bool = False) -> Slice | Space:
-    """Return the flow of a rung, "slice" or "space"; in space ``linked`` if all of the robot's pieces are to move."""
+def water_of(
+    rung: str, cells: int, reynolds: float, tail_height: float, *, linked: bool = False, floor: float | None = None
+) -> Slice | Space:
+    """Return the flow of a rung, "slice" or "space".
+
+    Args:
+        rung: "slice" or "space".
+        cells: cells per body length [-].
+        reynolds: frequency times length squared over viscosity [-].
+        tail_height: in space, height of the raised tail [m].
+        linked: in space, whether all of the robot's pieces are to move.
+        floor: in space, depth of a floor below the body's middle; None is no floor [m].
+    """
     if rung == "slice":
         return Slice(cells=cells, reynolds=reynolds)
-    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height, linked=linked)
+    return Space(cells=cells, reynolds=reynolds, tail_height=tail_height, linked=linked, floor=floor)
