@@ -1,10 +1,11 @@
 """Speed of the flow solver, beside what this machine's memory and threads give in the same run.
 
-Ratios travel, times do not. ``--pieces`` says where the time goes, piece by piece; ``--keep`` states what was found on
-the page on the limits of the flow solver.
+Ratios travel, times do not. ``--pieces`` says where the time goes, piece by piece; ``--small`` times small flows in the
+plane alone; ``--keep`` states what was found on the page on the limits of the flow solver.
 """
 
 import argparse
+import os
 import sys
 from collections import defaultdict
 from functools import partial
@@ -202,7 +203,70 @@ def tell_patch(steps=6, rounds=4, cells=64):
     return found
 
 
-def tell_batch(count=64, cells=64, steps=60, rounds=3):
+def tell_sizes(sizes=(64, 128, 256), steps=20, rounds=3):
+    """Print the speed of the moving eel on one thread by the size of its grid, in processor time [M cells/s]."""
+    found = {}
+    for cells in sizes:
+        sim, times = eel(cells, 1), []
+        for _ in range(rounds):
+            start = process_time()
+            for _ in range(steps):
+                sim.advance()
+            times.append(process_time() - start)
+        found[f"eel_{cells}"] = rate = steps * prod(sim.setup.grid.cells) / min(times) / 1e6
+        print(f"{' x '.join(map(str, sim.setup.grid.cells))}, moving eel, one thread: {rate:.1f} M cells/s")
+    ratio = found[f"eel_{sizes[-2]}"] / found[f"eel_{sizes[-1]}"]
+    print(f"moving eel, one thread: half the cells a length have {ratio:.2f} of the rate (asked: 0.9)")
+    return found
+
+
+PAIRS = (6,), (4,), (3,), (2,)
+"""Pairs of smoothing steps around a body that ``tell_pairs`` compares: on every level."""
+
+
+def tell_pairs(steps=60, eel_cells=64, plate_cells=24):
+    """Print what a pressure solve takes with fewer smoothing steps around the body, on one thread."""
+    grid = flow.Grid.covering((-2.0, 2.0), (-2.0, 2.0), cell=1 / plate_cells)
+    swing = flow.Oscillation(frequency=0.5, heave=(0.0, 0.15), pitch=0.2)
+    plate = flow.Body(shape=flow.Plate(length=1.0, thick=1.2 / plate_cells), motion=swing)
+    makers = {
+        "eel": lambda: eel(eel_cells, 1),
+        "plate": lambda: flow.Simulation(
+            flow.Setup(grid=grid, viscosity=1 / 200, stream=(1.0, 0.0), bodies=(plate,), coarse=True), thread_count=1
+        ),
+    }
+    found, solve, whole = {}, poisson.solve, patch.SMOOTHING_PAIRS
+    for label, make in makers.items():
+        for pairs in PAIRS:
+            times, cycles = [], []
+
+            def timed(*given, times=times, cycles=cycles):
+                start = process_time()
+                answer = solve(*given)
+                times.append(process_time() - start)
+                cycles.append(answer[0])
+                return answer
+
+            patch.SMOOTHING_PAIRS, poisson.solve = (pairs, whole[1]), timed
+            try:
+                sim = make()
+                for _ in range(steps):
+                    sim.advance()
+            finally:
+                patch.SMOOTHING_PAIRS, poisson.solve = whole, solve
+            kept = len(times) // 3  # the start takes more cycles
+            spent = np.array(times[kept:]) / np.array(cycles[kept:])
+            key = f"{label}_pairs_{pairs[0]}"
+            found[f"{key}_cycles"] = mean = float(np.mean(cycles[kept:]))
+            found[f"{key}_time"] = 1e6 * float(np.quantile(spent, 0.2)) * mean
+            print(
+                f"{label}, {pairs[0]} pairs: {mean:.2f} cycles and {found[f'{key}_time']:.0f} us a solve, "
+                f"{found[f'{key}_time'] / found[f'{label}_pairs_{PAIRS[0][0]}_time']:.2f} of that with {PAIRS[0][0]}"
+            )
+    return found
+
+
+def tell_batch(count=64, cells=64, steps=20, rounds=3):
     """Print the speed of many small flows on one thread, one after the other and in lockstep [M cells/s].
 
     Both take the same steps of the same flows in the same run, in processor time.
@@ -327,9 +391,19 @@ def main():
         "--steps", type=int, default=in_form(30, 1), help="steps per batch; the fastest of 5 batches counts"
     )
     options.add_argument("--pieces", action="store_true", help="say where the time goes instead")
+    options.add_argument("--small", action="store_true", help="time small flows in the plane alone, on one thread")
     options.add_argument("--keep", action="store_true", help="state what was found on the page on limits")
     chosen = options.parse_args()
     steps = chosen.steps
+    if chosen.small:
+        found = {"load": os.getloadavg()[0], "cores": os.cpu_count()}
+        print(f"{found['load']:.1f} processes share {found['cores']} cores")
+        found |= in_form(tell_batch, partial(tell_batch, 2, 32, 2, 1))()
+        found |= in_form(tell_sizes, partial(tell_sizes, (64, 96), 1, 1))()
+        found |= in_form(tell_pairs, partial(tell_pairs, 3, 64, 16))()
+        if chosen.keep and not SHORT:
+            store("bench_small_flows", found)
+        return
     many = min(2, numba.config.NUMBA_NUM_THREADS)
     far, found = {}, {}
     for threads in sorted({1, many}):
@@ -346,19 +420,22 @@ def main():
                     tell_pieces(make, cells, threads, steps)
             else:
                 found |= tell_speed(label, make, cells, steps, far)
-    tell_ratio(found)
     if not chosen.pieces:
         found |= in_form(tell_outline, partial(tell_outline, 48, 60, 1, 2))()
         found |= in_form(tell_patch, partial(tell_patch, 1, 2, 32))()
-        found |= in_form(tell_batch, partial(tell_batch, 2, 32, 2, 1))()
         for cells in in_form((96, 128), ()):
             found |= tell_swim(cells, far)
     if chosen.keep and many > 1 and not chosen.pieces and not SHORT:
-        sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
-        from pages import stated  # noqa: PLC0415
+        store("bench_flow", found)
 
-        stated.keep("bench_flow", found)
-        stated.main()
+
+def store(name, found):
+    """Keep what was measured, and state it on the pages."""
+    sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
+    from pages import stated  # noqa: PLC0415
+
+    stated.keep(name, found)
+    stated.main()
 
 
 def tell_swim(cells, far):
@@ -404,14 +481,6 @@ def tell_speed(label, make, cells, steps, far):
     if len(rates) > 1:
         print(f"{size}, {label}: two threads over one {rates[max(rates)] / rates[1]:.2f}")
     return {f"{key}_{threads}": rate for threads, rate in rates.items()} | {f"{key}_bytes": memory}
-
-
-def tell_ratio(found):
-    """Print the speed of the small plane flow over that of the large one, both of this run."""
-    rates = [found.get(f"eel_{cells}_1") for cells in FLOWS[0][2]]
-    if len(rates) > 1 and all(rates):
-        ratio = rates[0] / rates[1]
-        print(f"moving eel, one thread: the smaller grid has {ratio:.2f} of the rate of the larger one (asked: 0.9)")
 
 
 FLOWS = (

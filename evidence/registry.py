@@ -156,6 +156,7 @@ _OTHERS = (
         renew="make renew NAME=walls",
     ),
     Kept(name="bench_flow", modules=(), renew="python bench/bench_flow.py --keep"),
+    Kept(name="bench_small_flows", modules=(), renew="python bench/bench_flow.py --small --keep"),
     Kept(name="bench_gpu", modules=(), renew="python bench/bench_gpu.py --keep"),
     Kept(name="bench_page", modules=(), renew="python bench/bench_page.py --keep"),
 )  # fmt: skip

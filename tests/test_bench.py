@@ -54,6 +54,14 @@ def test_a_bench_prints_ratios(name, run_bench):
     assert re.search(RATIOS[name], done.stdout), done.stdout
 
 
+def test_small_flows_are_compared_with_large_ones_and_in_lockstep(programs, tmp_path):
+    environment = os.environ | {"SUCHUS_BENCH": "short"}
+    done = programs.run([BENCHES["bench_flow"], "--small"], cwd=tmp_path, environment=environment)
+    assert done.returncode == 0, done.stderr
+    for ratio in (r"in lockstep \d+\.\d+ times as fast", r"have \d+\.\d+ of the rate", r"\d+\.\d+ of that with 6"):
+        assert re.search(ratio, done.stdout), done.stdout
+
+
 def test_the_bench_of_the_page_says_what_is_missing(run_bench, tmp_path):
     done = run_bench("bench_page", PATH=str(tmp_path), XDG_CACHE_HOME=str(tmp_path))
     assert done.returncode == 0, done.stderr

@@ -13,7 +13,6 @@ SHELLS = ("sh", "bash")
 
 PYTHON_ELSEWHERE = {
     "README": "tests/test_examples.py",
-    "capture": "tests/test_sample_data.py",
     "water_in_mujoco": "tests/immersion/test_water_page.py",
     **dict.fromkeys(FOLLOWED, "tests/docs/test_how_to_pages.py"),
 }
@@ -67,8 +66,8 @@ ASSUMED = {
     "capture": "tracks.csv film_points.csv salamander_walking.csv",
     "environments": "HEXAPOD.toml HEXAPOD.npz FILE.npz OTHER.npz THIRD.npz out/train/velocity_NAME/velocity_NAME.npz "
                     "out/train/velocity/velocity.npz out/train/velocity_still_axis/velocity_still_axis.npz",
-    "faults": "out/optimise/fault_strider/result/outcome.json",
     "terrain": "my_robot.toml",
+    "faults": "out/optimise/fault_strider/result/outcome.json",
     "build_one": "my_robot.toml my_gait.toml my_servos.toml export/caiman_size/robot.toml",
 }  # fmt: skip
 """Files that a reader of a page has when a line names them: of his own, or of earlier and longer lines."""

@@ -117,4 +117,4 @@ def test_commands_are_ones_that_there_are(page):
     asked = [words for line in lines if (words := shlex.split(line, comments=True))[:1] == ["suchus"] and words[1:]]
     assert asked
     assert {words[1] for words in asked if not words[1].startswith("-")} <= {one.name for one in COMMANDS} | {"COMMAND"}
-    assert {words[2] for words in asked if words[1] == "run"} <= {*EXPERIMENTS, "NAME", "EXPERIMENT"}
+    assert {words[2] for words in asked if words[1] == "run" and words[2:]} <= {*EXPERIMENTS, "NAME", "EXPERIMENT"}

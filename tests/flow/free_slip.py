@@ -217,7 +217,7 @@ class SlipWater(Fluid):
             here = self.window_slices
             self._bare = self._raw - (stage.base[:, *here] - self._blended[:, *here])
             _leave_divergence(self._in_space(self._raw, 1), self._in_space(stage.rate, 1), self._first, step)
-            self._mirror_raw()
+            self._extend_raw()
             b, mu0, mu1, passage = (self._flat(a) for a in (self.b, self.mu0, self.mu1, self.passage))
             immerse(
                 out, blend, raw, b, mu0, passage, mu1, p, self._near_layout, self.inner, step, stage.blend_fraction

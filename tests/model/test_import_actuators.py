@@ -177,10 +177,11 @@ def test_what_the_file_does_not_bound_is_said_and_guessed(tmp_path):
 
 def test_muscles_dampers_and_actuators_of_bodies_are_named(tmp_path):
     draft = read(eel('<muscle joint="h1"/>'), tmp_path)
-    assert "is a muscle, which is not taken" in told(draft)
+    assert "Muscles are not taken: the draft has servos of their size at h1." in told(draft)
+    assert "bounds neither" not in told(draft)
     assert isinstance(drive_of(draft, "h1"), Servo)
     damped = read(eel('<damper joint="h1" kv="2" ctrlrange="0 1"/>'), tmp_path)
-    assert "damper drives no joint" in told(damped)
+    assert "Dampers brake a joint and drive none; those of h1 were not taken." in told(damped)
     assert isinstance(drive_of(damped, "h1"), Spring)
     with pytest.raises(UnreadableFile, match="names joint 'h9', which is not there"):
         read(eel('<motor joint="h9"/>'), tmp_path)

@@ -128,7 +128,19 @@ def read_text(path: str | Path, max_size: int = MAX_FILE_SIZE) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
+        raise no_text(path, data) from error
+
+
+def no_text(path: str | Path, data: bytes) -> UnreadableFile:
+    """Return what to raise where a file is no text in UTF-8.
+
+    Args:
+        path: the file.
+        data: its first bytes, at least two.
+    """
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return UnreadableFile(f"{path} is not a text file in UTF-8, but in UTF-16: save it as UTF-8.")
+    return UnreadableFile(f"{path} is not a text file in UTF-8; if it is a text, save it as UTF-8.")
 
 
 def read_toml(path: str | Path) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """Names of keypoints: which ones are ours, and which of ours those of other people come nearest to."""
 
 import re
+import unicodedata
 from collections.abc import Sequence
 from difflib import get_close_matches
 
@@ -9,10 +10,48 @@ from suchus.robot.design import LEGS
 
 _SERIES = re.compile(r"(spine|tail)_\d+")
 _SINGLE = ("snout", "neck", *GAIT_KEYPOINTS)
-_SIDES = {"left": "L", "l": "L", "right": "R", "r": "R"}
+_SIDES = {
+    **dict.fromkeys(("left", "l", "links", "linke", "gauche", "izquierda", "izquierdo", "sinistra", "sinistro"), "L"),
+    **dict.fromkeys(
+        ("right", "r", "rechts", "rechte", "droite", "droit", "derecha", "derecho", "destra", "destro"), "R"
+    ),
+}
 _ENDS = {
-    **dict.fromkeys(("front", "fore", "forelimb", "forepaw", "forefoot", "foreleg", "hand", "anterior"), "F"),
-    **dict.fromkeys(("hind", "rear", "back", "hindlimb", "hindpaw", "hindfoot", "hindleg", "foot", "posterior"), "H"),
+    **dict.fromkeys(
+        (
+            "front",
+            "fore",
+            "forelimb",
+            "forepaw",
+            "forefoot",
+            "foreleg",
+            "hand",
+            "anterior",
+            "avant",
+            "vorne",
+            "vorder",
+            "delantera",
+        ),
+        "F",
+    ),
+    **dict.fromkeys(
+        (
+            "hind",
+            "rear",
+            "back",
+            "hindlimb",
+            "hindpaw",
+            "hindfoot",
+            "hindleg",
+            "foot",
+            "posterior",
+            "arriere",
+            "hinten",
+            "hinter",
+            "trasera",
+        ),
+        "H",
+    ),
 }
 _LETTERS = {"f": "F", "h": "H", "b": "H"}
 _CODES = {
@@ -29,6 +68,25 @@ _WORDS = {
     "tail_base": ("tailbase", "tailroot", "tailstart", "cloaca", "vent"),
     "tail_tip": ("tailtip", "tailend"),
 }
+_FEET = frozenset(
+    (
+        "paw",
+        "paws",
+        "foot",
+        "feet",
+        "leg",
+        "limb",
+        "hand",
+        "toe",
+        "toes",
+        "ankle",
+        "wrist",
+        "claw",
+        "hoof",
+        "pes",
+        "manus",
+    )
+)  # words of a name that is a foot's, whichever it is
 _TAIL_ENDS = {"tail_base": {"base", "root", "start", "proximal"}, "tail_tip": {"tip", "end", "distal"}}
 _CUTOFF = 0.75  # likeness of two names from which on one is suggested for the other
 
@@ -38,9 +96,17 @@ def is_keypoint(name: str) -> bool:
     return name in _SINGLE or _SERIES.fullmatch(name) is not None
 
 
+def _words(name: str) -> list[str]:
+    """Return the words of a name in lower case, without digits and accents."""
+    plain_name = unicodedata.normalize("NFKD", name.lower())
+    return [
+        word for word in re.split(r"[^a-z]+", "".join(c for c in plain_name if not unicodedata.combining(c))) if word
+    ]
+
+
 def nearest_name(name: str) -> str | None:
     """Return the keypoint of ours that a name probably means, as LF for ``left_fore_paw``; None if nothing is near."""
-    words = [word for word in re.split(r"[^a-z]+", name.lower()) if word]
+    words = _words(name)
     for keypoint, tail_ends in _TAIL_ENDS.items():
         if "tail" in words and tail_ends & set(words):
             return keypoint
@@ -93,6 +159,14 @@ def check_feet(tracks: Tracks) -> None:
     """
     suggestions = unused_points(tracks.points)
     feet = {name: keypoint_name for name, keypoint_name in suggestions.items() if keypoint_name in LEGS}
+    unsided_feet = [name for name in suggestions if name not in feet and _FEET & set(_words(name))]
+    if unsided_feet and not feet and not tracks.legs:
+        names_option = " ".join(f"{name}=..." for name in unsided_feet)
+        raise UnusableTracks(
+            f"in {tracks.source} no keypoint is called LF, RF, LH or RH, but {' and '.join(unsided_feet)} "
+            f"seem{'s' * (len(unsided_feet) == 1)} to be feet; say which with --names {names_option}, each of LF, RF, "
+            "LH, RH, or other_1, other_2 and so on for what is none."
+        )
     if feet and not tracks.legs:
         names_option = " ".join(f"{name}={keypoint_name}" for name, keypoint_name in feet.items())
         other_names = " ".join(f"{name}=other_{i}" for i, name in enumerate(feet, 1))

@@ -14,11 +14,13 @@ import numpy as np
 
 from suchus.animals.capture.tracks import UnusableTracks
 from suchus.core.errors import UnreadableFile
+from suchus.core.reading import no_text, read_bytes
 
 UNIQUE = "single"
 """Name of DeepLabCut for the body parts that belong to no individual."""
 MAX_COLUMNS = 5000
 """Greatest number of columns of a table [-]."""
+_DECIMAL_COMMA = re.compile(r"\s*[+-]?\d*,\d+(?:[eE][+-]?\d+)?\s*")
 _MAX_LINE = 2**20  # bytes of the first line that are looked at
 _SLEAP_FRAME, _SLEAP_TRACK = "frame_idx", "track"
 
@@ -38,7 +40,7 @@ def software_of(path: Path) -> str | None:
     """Return the software that wrote a CSV table, by its first line; None if it is none of these."""
     with path.open("rb") as file:
         line = file.readline(_MAX_LINE).lstrip(b"\xef\xbb\xbf").decode(errors="replace")
-    cells = [cell.strip().strip('"') for cell in line.split(",")]
+    cells = [cell.strip().strip('"') for cell in line.split(delimiter_of(line))]
     if cells[0].lower() == "scorer":
         return "DeepLabCut"
     if _SLEAP_FRAME in cells and any(cell.endswith(".x") for cell in cells):
@@ -68,6 +70,11 @@ def read_pose_table(path: Path, software: str, individual: str | None) -> tuple[
     return _deeplabcut(rows, individual, path.name)
 
 
+def delimiter_of(header: str) -> str:
+    """Return what separates the cells of a table: a comma, or the semicolon or tab that its header has more of."""
+    return max((",", ";", "\t"), key=header.count)
+
+
 def check_width(count: int, name: str) -> None:
     """Refuse a table with more columns than an animal can have keypoints."""
     if count > MAX_COLUMNS:
@@ -86,15 +93,24 @@ def csv_rows(path: Path) -> list[list[str]]:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             header = file.readline()
-            check_width(header.count(",") + 1, path.name)
+            delimiter = delimiter_of(header)
+            check_width(header.count(delimiter) + 1, path.name)
             file.seek(0)
-            return [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+            rows = [row for row in csv.reader(file, delimiter=delimiter) if any(cell.strip() for cell in row)]
+            if delimiter == ";":  # as spreadsheets write where the decimal sign is a comma
+                rows = [[_with_decimal_point(cell) for cell in row] for row in rows]
+            return rows
     except UnicodeDecodeError as error:
-        raise UnreadableFile(f"{path} is not a text file in UTF-8.") from error
+        raise no_text(path, read_bytes(path)) from error
     except OSError as error:
         raise UnreadableFile(f"{path} cannot be read: {(error.strerror or str(error)).lower()}.") from error
     except csv.Error as error:
         raise UnreadableFile(f"{path} is no CSV table: {error}.") from error
+
+
+def _with_decimal_point(cell: str) -> str:
+    """Return a number with a decimal comma with a point instead; other cells as they are."""
+    return cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell
 
 
 def _deeplabcut(rows: list[list[str]], individual: str | None, name: str) -> tuple[np.ndarray, PoseTracks]:

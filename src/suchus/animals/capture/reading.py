@@ -37,6 +37,13 @@ _CONTENTS = {
     "Anipose": "columns of points, fnum and NAME_ncams",
     "NWB": "a PoseEstimation in its behavior module",
 }
+_AS_TABLE = "write it as a CSV table, with the columns time [s], hip_x [px], hip_y [px] and so on"
+_TABLE_REMEDIES = {
+    **dict.fromkeys((".xlsx", ".xls", ".ods", ".numbers"), "save the sheet as CSV"),
+    **dict.fromkeys((".mat", ".npy", ".npz", ".pkl", ".pickle", ".parquet", ".feather", ".json", ".rds"), _AS_TABLE),
+    **dict.fromkeys((".zip", ".gz", ".tar", ".7z", ".rar"), "unpack it, and give the file of keypoints in it"),
+}
+"""What to do with files of kinds that are not read, by their ending."""
 _INSTALL = 'pip install "suchus[capture]"'
 
 
@@ -165,10 +172,15 @@ def _guess(path: Path) -> str:
     if suffix == ".nwb":
         return "NWB"
     if suffix in (".h5", ".hdf5") and h5py.is_hdf5(path):
-        with h5py.File(path) as file:
-            return "SLEAP" if "tracks" in file else "DeepLabCut"
+        try:
+            with h5py.File(path) as file:
+                return "SLEAP" if "tracks" in file else "DeepLabCut"
+        except OSError as error:
+            raise UnreadableFile(f"{path} is damaged or cut: HDF5 does not open it; export it again.") from error
     if suffix in _TEXT:
         return software_of(path) or "DeepLabCut"
+    if suffix in _TABLE_REMEDIES:
+        raise UnreadableFile(f"{path} is not read: {_TABLE_REMEDIES[suffix]}.")
     raise UnreadableFile(
         f"{path} is neither a CSV table nor a file that a pose estimator is known by; say whose it is with --software "
         f"({', '.join(SOFTWARE)})."

@@ -96,14 +96,23 @@ def _trusted_tracks(source: Tracks, faults: Collection[str], tracks: Tracks | No
     """Return the tracks without faulty keypoints; the rest must show the direction of the trunk."""
     trusted_tracks = (tracks or source).without(faults)
     if len(trusted_tracks.trunk_chain) < 2:
-        reason_text = (
-            "; ".join(f"{name} {reason}" for name, reason in faults.items()) if isinstance(faults, Mapping) else ""
-        )
+        reason_text = _reason_text(faults) if isinstance(faults, Mapping) else ""
         raise UnusableTracks(
             f"in {source.source} too few keypoints of the trunk can be trusted to see where the body heads: "
-            f"{reason_text}; track them again."
+            f"{reason_text or 'track them again'}."
         )
     return trusted_tracks
+
+
+def _reason_text(faults: Mapping[str, str]) -> str:
+    """Return what is wrong with keypoints; those with the same fault share a clause."""
+    names_by_reason: dict[str, list[str]] = {}
+    for name, reason in faults.items():
+        names_by_reason.setdefault(reason, []).append(name)
+    return "; ".join(
+        f"{names[0]} {reason}" if len(names) == 1 else f"each of {', '.join(names)} {reason}"
+        for reason, names in names_by_reason.items()
+    )
 
 
 def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
@@ -112,7 +121,7 @@ def _lost_keypoints(tracks: Tracks, phrase: str = "is lost") -> dict[str, str]:
     return {
         name: f"{phrase} in {100 * lost_fraction:.0f} % of the frames; at most {100 * MAX_LOST_FRACTION:.0f} % may "
         f"be: track it "
-        "again, or lower the confidence that is asked for"
+        "again, or ask for less with --confidence"
         for name, lost_fraction in lost_fractions.items()
         if lost_fraction > MAX_LOST_FRACTION
     }
@@ -127,13 +136,11 @@ def _stuck_keypoints(tracks: Tracks, noise: Mapping[str, float]) -> dict[str, st
     if typical_noise <= _MIN_FILM_NOISE * _scale(tracks):
         return {}
     repeated = np.full(tracks.position.shape[1:], np.nan)  # fraction of frames, by keypoint and axis
-    values = np.full(tracks.position.shape[1:], np.nan)
     for i, j in np.ndindex(*repeated.shape):
         series = tracks.position[:, i, j]
         series = series[np.isfinite(series)]
         if len(series) >= _MIN_WALKING_FRAMES:
             repeated[i, j] = np.mean(np.diff(series) == 0.0)
-            values[i, j] = series[-1]
     faults = {}
     for i, name in enumerate(tracks.points):
         for j, axis in enumerate("xyz"[: tracks.position.shape[-1]]):
@@ -142,8 +149,8 @@ def _stuck_keypoints(tracks: Tracks, noise: Mapping[str, float]) -> dict[str, st
             is_alone = len(others) > 1 and np.mean(others < _MAX_REPEATED_FRACTION) > _MAX_REPEATED_FRACTION
             if repeated[i, j] > _MIN_STUCK_FRACTION and is_alone:
                 faults[name] = (
-                    f"is stuck: its {axis} is {values[i, j] + 0.0:g} {tracks.unit} in {100 * repeated[i, j]:.0f} % of "
-                    "the frames; track it again"
+                    f"is stuck: its {axis} stays the same in {100 * repeated[i, j]:.0f} % of the frames; track it "
+                    "again, unless the picture was shifted to hold it at one place"
                 )
     return faults
 

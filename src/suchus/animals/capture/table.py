@@ -131,8 +131,8 @@ def _columns(header: list[str], name: str) -> tuple[list[_Column], str]:
     first_heading = header[0].strip().lower()
     if first_heading != "time [s]" and not _FRAME.fullmatch(first_heading):
         raise UnreadableFile(
-            f"the first column of {name} is {header[0].strip()!r}; 'time [s]' is needed, or 'frame' and --fps, as in: "
-            f"{_EXAMPLE}"
+            f"the first column of {name} is {header[0].strip()[:40]!r}; 'time [s]' is needed, or 'frame' and --fps, as "
+            f"in: {_EXAMPLE}"
         )
     columns, units = [], set()
     for heading in header[1:]:

@@ -244,6 +244,23 @@ def without_absurd_positions(tracks: Tracks) -> Tracks:
     return replace(tracks, position=np.where(is_absurd.any(axis=-1, keepdims=True), np.nan, tracks.position))
 
 
+def with_gaps(tracks: Tracks) -> Tracks:
+    """Return tracks with a frame of lost points for each frame that the file leaves out, so that frames follow evenly.
+
+    Args:
+        tracks: with times that increase.
+    """
+    steps = np.diff(tracks.time)
+    missing_frames = np.maximum(np.round(steps / np.median(steps)).astype(int) - 1, 0)
+    if not missing_frames.any():
+        return tracks
+    indices = np.arange(len(tracks.time)) + np.concatenate([[0], np.cumsum(missing_frames)])
+    position = np.full((indices[-1] + 1, *tracks.position.shape[1:]), np.nan)
+    position[indices] = tracks.position
+    time = np.interp(np.arange(indices[-1] + 1), indices, tracks.time)
+    return replace(tracks, time=time, position=position)
+
+
 def check_size(tracks: Tracks) -> None:
     """Refuse an animal whose trunk has a length that no animal has.
 

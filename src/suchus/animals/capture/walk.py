@@ -24,6 +24,7 @@ from suchus.animals.capture.tracks import (
     check_size,
     check_tracks,
     lacking,
+    with_gaps,
     without_absurd_positions,
 )
 from suchus.core.checks import require
@@ -41,6 +42,7 @@ _MIN_LAG = 0.015  # [cycle]; phase lag of a foot that may be late in the film
 _LAG_TOLERANCE = 0.35  # relative difference between its phase lag and its lag in position
 _PLACE_ERROR = 0.005  # error of a step by the unknown shape of the swing, over its length
 _PLACES = 0.8  # least fraction of frames with a point, for its advance in a cycle
+_MAX_CYCLE_GAP = 0.25  # greatest fraction of a cycle in which an angle is not seen, for its reading in that cycle
 _TURNS = 0.1  # [rad per cycle]; turning from which on the advance is taken along the path
 _ADVANCE = 0.3  # least advance of the body over the distance that feet sweep
 
@@ -132,7 +134,7 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
     check_tracks(tracks)
     check_feet(tracks)
     unused = unused_text(tracks.points)
-    tracks = without_absurd_positions(tracks)
+    tracks = with_gaps(without_absurd_positions(tracks))
     surface = level_surface(tracks)
     tracks, pauses = longest_bout(surface.tracks)
     screening = screen_tracks(tracks)
@@ -164,7 +166,9 @@ def observe(tracks: Tracks, *, tail_share: float = 1.0) -> Walk:
             feet[leg] = foot_contact
     tracks = tracks.without(faults)
     count = int((tracks.time[-1] - tracks.time[0]) / period + 0.05)
-    cycle_readings = [_fit_reading(_cycle(tracks, i, period), period, tail_share) for i in range(count)]
+    cycle_readings = [
+        _fit_reading(_cycle(tracks, i, period), period, tail_share, max_gap=_MAX_CYCLE_GAP) for i in range(count)
+    ]
     advances = [cycle_reading.advance for cycle_reading in cycle_readings if np.isfinite(cycle_reading.advance)] or [
         mean_reading.advance
     ]
@@ -472,19 +476,21 @@ def _swinging(tracks: Tracks) -> dict[str, np.ndarray]:
     return visible_signals
 
 
-def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
+def _fit_reading(tracks: Tracks, period: float, tail_share: float, *, max_gap: float = 1.0) -> _Reading:
     """Fit the angles, the advance and the foot paths of tracks over their mean cycle.
 
     Args:
         tracks: the keypoints, by the clock.
         period: of the cycle [s].
         tail_share: fraction of the tail's length at which its lateral angle is taken [-].
+        max_gap: greatest fraction of successive frames in which an angle is not seen; in a single cycle a fit would go
+            anywhere there [-].
     """
     angles = bend_angles(tracks, tail_share)._asdict()
     fits = {}
     for name, series in angles.items():
         frame_count = int(np.isfinite(series).sum())
-        if frame_count:
+        if frame_count and _longest_gap(series) <= max_gap * len(series):
             fits[name] = fit(
                 tracks.time, series, period, harmonics=harmonics_for(frame_count, tracks.rate * period, max_harmonics=6)
             )
@@ -501,6 +507,13 @@ def _fit_reading(tracks: Tracks, period: float, tail_share: float) -> _Reading:
         period,
         tail_share,
     )
+
+
+def _longest_gap(series: np.ndarray) -> int:
+    """Return the greatest number of successive frames in which a quantity is not seen."""
+    seen_frames = np.flatnonzero(np.isfinite(series))
+    edges = np.concatenate([[-1], seen_frames, [len(series)]])
+    return int(np.max(np.diff(edges))) - 1
 
 
 def _numbers(reading: _Reading, zero: float) -> dict[str, float]:

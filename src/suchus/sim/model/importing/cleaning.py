@@ -4,7 +4,7 @@ XML from outside is parsed without entities, within a size and a depth, or refus
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
@@ -102,6 +102,7 @@ def clean_urdf(
     links, joints = root.findall("link"), root.findall("joint")
     if not links:
         raise UnreadableFile("the URDF has no <link>; a robot needs some.")
+    _refuse_duplicates(links, joints)
     links, joints, floating_remarks = _freed(links, joints)
     _refuse_kinds(joints)
     _refuse_loops(links, joints)
@@ -147,6 +148,15 @@ def _freed(
     solid = [str(link.get("name")) for link in other_links if len(link)]
     remarks = [f"Beside the robot the file holds {', '.join(solid[:4])}, which was not taken."] if solid else []
     return [link for link in links if link not in other_links], robot_joints, remarks
+
+
+def _refuse_duplicates(links: list[ElementTree.Element], joints: list[ElementTree.Element]) -> None:
+    """Refuse two links or two joints of one name, by which a URDF refers to them."""
+    for kind, elements in (("links", links), ("joints", joints)):
+        counts = Counter(element.get("name", "") for element in elements)
+        name, count = counts.most_common(1)[0] if counts else ("", 0)
+        if count > 1:
+            raise UnreadableFile(f"{count} {kind} are called {name[:60]!r}; each needs a name of its own.")
 
 
 def _refuse_kinds(joints: list[ElementTree.Element]) -> None:
@@ -288,6 +298,8 @@ _BODIES = ("replicate", "composite", "flexcomp", "attach")
 _ACTUATOR_TAGS = (
     "general", "motor", "position", "velocity", "intvelocity", "damper", "dcmotor", "cylinder", "muscle", "adhesion"
 )  # fmt: skip
+GUESSED = "suchus_guess_"
+"""Beginning of the name of a motor that stands for an actuator of which nothing is taken but that it drives."""
 _UNTAKEN_ACTUATORS = ("damper", "cylinder", "muscle", "adhesion")
 _BODY_TAGS = ("body", "joint", "freejoint", "geom", "inertial", "site", "frame")
 _COMPILER = ("angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "inertiagrouprange", "settotalmass")
@@ -432,34 +444,63 @@ def _equalities(root: ElementTree.Element) -> tuple[str, ...]:
 
 
 def _actuators(root: ElementTree.Element) -> tuple[ElementTree.Element, tuple[str, ...]]:
-    """Return the actuators that turn a joint, and remarks on those that are not taken.
+    """Return the actuators that turn a joint, and a remark on each kind that is not taken.
 
-    A hinge whose actuator is a muscle keeps a motor without limits in its place, so that it counts as driven.
+    A hinge whose actuator is a muscle or a cylinder keeps a motor without limits in its place, so that it counts as
+    driven.
     """
-    tendons = {e.get("name"): e for section in root.findall("tendon") for e in section}
     joints = {e.get("name") for e in root.iter("joint")}
-    actuators = ElementTree.Element("actuator")
-    remarks = []
+    actuators, tendons = ElementTree.Element("actuator"), dict[str, str]()
+    untaken: dict[str, list[str]] = {"muscle": [], "cylinder": [], "damper": [], "other": []}
+    pulled = _pulled_joints(root)
     for element in (e for section in root.findall("actuator") for e in section):
         joint, name = element.get("joint") or element.get("jointinparent"), element.get("name", element.tag)
         is_muscle = element.tag == "muscle" or "muscle" in (element.get("gaintype"), element.get("dyntype"))
         if joint and joint not in joints:
             raise UnreadableFile(f"actuator {name} names joint {joint[:60]!r}, which is not there.")
-        if joint and is_muscle:
-            ElementTree.SubElement(actuators, "motor", joint=joint, ctrllimited="false", forcelimited="false")
-            remarks.append(f"Actuator {name} is a muscle, which is not taken; the draft has a servo of its size.")
+        if joint and (is_muscle or element.tag == "cylinder"):
+            ElementTree.SubElement(
+                actuators, "motor", name=f"{GUESSED}{len(actuators)}", joint=joint, ctrllimited="false",
+                forcelimited="false",
+            )  # fmt: skip
+            untaken["muscle" if is_muscle else "cylinder"].append(joint)
         elif joint and element.tag in _ACTUATOR_TAGS and element.tag not in _UNTAKEN_ACTUATORS:
             actuators.append(ElementTree.Element(element.tag, element.attrib))
-        elif element.get("tendon") in tendons:
-            tendon_joints = [e.get("joint", "") for e in tendons[element.get("tendon")].iter("joint")]
-            remarks.append(
-                f"Actuator {name} pulls a tendon over {', '.join(tendon_joints) or 'sites'}; "
-                "this drive was not taken: these hinges are springs in the draft. Say it as [[cables]], with cord "
-                "spacing and pulley, or give them servos."
-            )
+        elif joint and element.tag == "damper":
+            untaken["damper"].append(joint)
+        elif element.get("tendon") in pulled:
+            tendons[name] = ", ".join(pulled[str(element.get("tendon"))]) or "sites"
         else:
-            remarks.append(f"Actuator {name} drives no joint and was not taken.")
-    return actuators, tuple(remarks)
+            untaken["other"].append(name)
+    sentences = {
+        "muscle": "Muscles are not taken: the draft has servos of their size at {}.",
+        "cylinder": "Cylinders are not taken: the draft has servos of their size at {}.",
+        "damper": "Dampers brake a joint and drive none; those of {} were not taken.",
+        "other": "These actuators drive no joint and were not taken: {}.",
+    }
+    replacement = "springs" if len(actuators) else "guessed servos"
+    tendon_remarks = [
+        f"Actuator {name} pulls a tendon over {places}; this drive was not taken: these hinges are {replacement} in "
+        "the draft. Say it as [[cables]], with cord spacing and pulley, or give them servos."
+        for name, places in tendons.items()
+    ]
+    remarks = [sentences[kind].format(listed(names)) for kind, names in untaken.items() if names]
+    return actuators, (*tendon_remarks, *remarks)
+
+
+def _pulled_joints(root: ElementTree.Element) -> dict[str, list[str]]:
+    """Return the joints along each tendon of an MJCF, by the tendon's name; a tendon through sites has none."""
+    return {
+        e.get("name", ""): [joint.get("joint", "") for joint in e.iter("joint")]
+        for section in root.findall("tendon")
+        for e in section
+    }
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return the first names of several, and how many more there are; a name that repeats counts once."""
+    names = tuple(dict.fromkeys(names))
+    return f"{', '.join(names[:4])}{f' and {len(names) - 4} more' if len(names) > 4 else ''}"
 
 
 def with_passive(root: ElementTree.Element, drives: dict[str, Drive]) -> dict[str, Drive]:

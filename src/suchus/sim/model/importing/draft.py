@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from scipy.linalg import null_space
 from scipy.spatial.transform import Rotation
 
 from suchus.core.errors import InvalidDesign, UnreadableFile
@@ -17,6 +18,7 @@ from suchus.robot.design.hinge import Turn
 from suchus.robot.design.scale import contact_for
 from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.sim.model.build import compile_model
+from suchus.sim.model.importing.cleaning import Drive
 from suchus.sim.model.importing.making import (
     DraftState,
     Match,
@@ -114,7 +116,15 @@ def _without_needless(robot: Robot) -> tuple[Robot, set[str]]:
         axis = tuple(segment if segment.name in keep else replace(segment, inertia=None) for segment in robot.axis)
         return replace(robot, axis=axis, girdles=tuple(bared(girdle, keep) for girdle in robot.girdles))
 
-    stated, shape_model = compile_model(robot), compile_model(with_inertias(set()))
+    try:
+        stated, shape_model = compile_model(robot), compile_model(with_inertias(set()))
+    except InvalidDesign as error:
+        if "inertia" not in str(error):
+            raise
+        raise UnreadableFile(
+            f"the robot is {robot.length:.2g} m long and weighs {robot.mass:.2g} kg: moments of inertia of its parts "
+            "are smaller than MuJoCo computes with; if lengths are in other units, scale them to metres."
+        ) from error
     differing = {
         body.name
         for body in layout(robot).bodies
@@ -169,6 +179,8 @@ def _reason_against_leg(plan: BodyPlan, words: Words, number: int) -> str:
         any(is_fin_name(name) for name in names if name in plan.tree_part(chain.parts[0]).names) for chain in chains
     ):
         return "are fins, wings or the like by name,"
+    if all(is_wheel(plan.tree_part(chain.parts[-1])) and len(chain.parts) == 1 for chain in chains):
+        return "turn about their own middle, as wheels do, which suchus does not have,"
     state = empty_draft(plan, words)
     girdle = draft_girdle(state, number)
     depth = -lowest_foot_height(girdle)
@@ -187,6 +199,20 @@ def _reason_against_leg(plan: BodyPlan, words: Words, number: int) -> str:
     return ""
 
 
+def is_wheel(tree_part: TreePart) -> bool:
+    """Return whether a part turns all round about its own middle, and is as far across in any direction."""
+    if len(tree_part.joints) != 1 or tree_part.joints[0].range is not None or not tree_part.pieces:
+        return False
+    joint = tree_part.joints[0]
+    corners = np.concatenate([piece.corners for piece in tree_part.pieces]) - joint.anchor
+    across = null_space(joint.axis[None])  # two directions, shape (3, 2)
+    extents = np.array([(corners @ across).max(axis=0), -(corners @ across).min(axis=0)])
+    centre = (tree_part.com - joint.anchor) @ across
+    radius = float(extents.max())
+    is_round = float(extents.min()) > _WHEEL_ROUNDNESS * radius
+    return is_round and float(np.linalg.norm(centre)) < (1.0 - _WHEEL_ROUNDNESS) * radius
+
+
 def _seated(girdle: Girdle, segment: str, front: float) -> Girdle:
     """Return a girdle on its segment, whose front end, its origin, lies at a place along the body [m]."""
     return replace(girdle, segment=segment, at=girdle.at - front)
@@ -200,6 +226,7 @@ def _balance(state: DraftState, robot: Robot) -> list[str]:
     return []
 
 
+_WHEEL_ROUNDNESS = 0.7  # least extent of a wheel to any side of its hinge, over its greatest
 _END = "guess: the farthest point of its shapes, frames, joints and hips"
 _RADIUS_RATIO = 0.1  # radius of a segment or link without a shape, over its length
 _MIN_LENGTH_RATIO = 1e-3  # of the robot's length; of a segment at an end that nothing of it reaches beyond its joint
@@ -584,7 +611,12 @@ def _foot(state: DraftState, parts: Sequence[TreePart], knee: np.ndarray, note_p
     elif foot_part.pieces:
         mean_centre = np.mean([state.to_robot_frame(piece.centre) for piece in foot_part.pieces], axis=0)
         far_end = np.array([*mean_centre[:2], far_end[2]]) if abs(far_end[2] - knee[2]) > _POINT else far_end
-        state.remarks.append(f"{foot_part.name} has no ball for a foot; the draft has the foot at its farthest end.")
+        state.remarks.append(
+            f"{foot_part.name} turns about its own middle, as a wheel does, which suchus does not have: the draft has "
+            f"a foot at its rim. With --leave {foot_part.name} the limb ends above it."
+            if is_wheel(foot_part)
+            else f"{foot_part.name} has no ball for a foot; the draft has the foot at its farthest end."
+        )
     radius = _FOOT * max(reach + float(np.linalg.norm(far_end - knee)), _POINT)
     state.notes[f"{note_path}.foot.radius"] = "guess: a twelfth of the limb's reach; see --foot-radius"
     return far_end, max(radius, 1e-5)
@@ -629,3 +661,18 @@ def _tell_sides(
             if np.abs(np.subtract(left_range, right_range)).max() > _SIDE_TOLERANCE:
                 range_text = f"{right_joint.name} has another range than {left_joint.name}"
                 state.remarks.append(f"{range_text}; the draft has the left one on both.")
+    drives = [tuple(_drive_text(joint.drive) for joint in pair) for pair in zip(*joints, strict=True)]
+    differing = [
+        f"{right_joint.name} {right_drive} ({left_joint.name} {left_drive})"
+        for left_joint, right_joint, (left_drive, right_drive) in zip(*joints, drives, strict=True)
+        if left_drive != right_drive
+    ]
+    if differing:
+        state.remarks.append(f"Drives differ from side to side: {'; '.join(differing)}. The draft has the left ones.")
+
+
+def _drive_text(drive: Drive | None) -> str:
+    """Return how a hinge is driven, as a predicate: not at all, or with which torque."""
+    if drive is None or (drive.torque is None and not drive.passive):
+        return "has a torque that is not stated"
+    return "is passive" if drive.passive else f"has {drive.torque:.4g} N m"

@@ -6,7 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from suchus.sim.model.importing.cleaning import Drive
+from suchus.sim.model.importing.cleaning import GUESSED, Drive, listed
 
 _SATURATING = 1e9  # control value that brings every actuator to its limit of force
 _INTEGRATOR = int(mujoco.mjtDyn.mjDYN_INTEGRATOR)
@@ -32,7 +32,8 @@ def actuated_drives(model: Any) -> tuple[dict[str, Drive], tuple[str, ...]]:
         members = [i for i, actuated_joint in actuators.items() if actuated_joint == joint]
         name, torque = str(model.joint(joint).name), torques[joint]
         if torque is None:
-            unbounded.append(name)
+            is_guessed = all(str(model.actuator(i).name).startswith(GUESSED) for i in members)
+            unbounded += [] if is_guessed else [name]
         elif torque == 0.0:
             powerless.append(name)
         kp, kd = (_joint_gain(model, members, term) for term in (1, 2))
@@ -43,19 +44,15 @@ def actuated_drives(model: Any) -> tuple[dict[str, Drive], tuple[str, ...]]:
     remarks = []
     if unbounded:
         remarks.append(
-            f"The file bounds neither control nor force of the actuators of {_listed(unbounded)}: their torque is a "
+            f"The file bounds neither control nor force of the actuators of {listed(unbounded)}: their torque is a "
             "guess (ctrlrange, forcerange or actuatorfrcrange would state it)."
         )
     if powerless:
         remarks.append(
-            f"The actuators of {_listed(powerless)} give no torque in the file (a range or gear of zero): it was "
+            f"The actuators of {listed(powerless)} give no torque in the file (a range or gear of zero): it was "
             "taken as not filled in, and their torque is a guess."
         )
     return drives, tuple(remarks)
-
-
-def _listed(names: list[str]) -> str:
-    return f"{', '.join(names[:4])}{f' and {len(names) - 4} more' if len(names) > 4 else ''}"
 
 
 def _max_torques(model: Any, actuators: dict[int, int]) -> dict[int, float | None]:

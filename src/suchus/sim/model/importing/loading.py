@@ -27,6 +27,13 @@ from suchus.sim.model.importing.meshes import Meshes
 
 Format = Literal["URDF", "MJCF"]
 _BODIES = 1000  # at most; MuJoCo walks down a chain by recursion
+_INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+_NUMBERS = {
+    "origin": ("xyz", "rpy"), "axis": ("xyz",), "box": ("size",), "cylinder": ("radius", "length"),
+    "sphere": ("radius",), "mass": ("value",), "inertia": _INERTIA, "body": ("pos", "quat", "euler"),
+    "joint": ("axis", "range"), "geom": ("size", "fromto"), "inertial": ("pos", "diaginertia", "fullinertia"),
+}  # fmt: skip
+"""Attributes that are numbers, by the tag of their element."""
 _NAMES = ("name", "class", "childclass", "link", "joint", "file", "filename", "mesh", "type")
 
 
@@ -82,7 +89,8 @@ def load(path: Path, *, packages: Sequence[str | Path] = (), without_meshes: boo
         raise UnreadableFile(f"{path.name} cannot be imported: {error}") from error
     if meshes.read_errors:
         remarks += (
-            f"{len(meshes.read_errors)} meshes were not read: {'; '.join(list(meshes.read_errors.values())[:3])}.",
+            f"{len(meshes.read_errors)} mesh{'es were' if len(meshes.read_errors) > 1 else ' was'} not read: "
+            f"{'; '.join(list(meshes.read_errors.values())[:3])}.",
         )
     gravity = _gravity(root) if kind == "MJCF" else None
     return Loaded(kind=kind, model=model, drives=drives, remarks=(*remarks, *inertia_remarks), gravity=gravity)
@@ -112,6 +120,13 @@ def _check_numbers(clean: ElementTree.Element) -> None:
         for key, text in element.attrib.items():
             if key in _NAMES:
                 continue
+            if key in _NUMBERS.get(element.tag, ()):
+                no_number = next((word for word in text.split() if not _is_number(word)), None)
+                if no_number is not None:
+                    raise UnreadableFile(
+                        f"<{element.tag} {key}={text[:60]!r}> holds {no_number[:40]!r}, which is no number; numbers "
+                        "have a decimal point and stand apart by spaces."
+                    )
             odd = next((word for word in text.split() if word.strip("+-").lower() in ("nan", "inf", "infinity")), "")
             mass = key in ("mass", "density") or (element.tag == "mass" and key == "value")
             if odd or (mass and not _is_mass(text)):
@@ -119,6 +134,14 @@ def _check_numbers(clean: ElementTree.Element) -> None:
                     f"<{element.tag} {key}={(odd or text)[:40]!r}> is not allowed; "
                     + ("a finite number from 0 on is needed." if mass else "finite numbers are needed.")
                 )
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _is_mass(text: str) -> bool:
@@ -141,7 +164,9 @@ def _compiled(clean: ElementTree.Element, meshes: Meshes) -> tuple[Any, tuple[st
             mesh.inertia = getattr(mujoco.mjtMeshInertia, f"mjMESH_INERTIA_{'EXACT' if exact else 'CONVEX'}")
         model, inertia_remarks = _balanced(spec)
     except (ValueError, mujoco.FatalError) as error:
-        message = " ".join(str(error).split())
+        message = re.sub(
+            r",? line \d+", "", " ".join(str(error).split())
+        )  # lines of the text that was made of the file
         raise UnreadableFile(f"MuJoCo says: {message[:240].rstrip('.')}.") from error
     if meshes.open:
         inertia_remarks += (

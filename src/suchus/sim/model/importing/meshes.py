@@ -90,6 +90,8 @@ class Meshes:
             if self._package_folders(package):
                 return "Put the mesh where the file says it is"
             return f"Say --packages FOLDER for the folder of {package}, whose package.xml names it, or one above it"
+        if "$(" in name:
+            return "Expand the file first, as with xacro, which puts a path in the place of $(...)"
         if path_inside(self._home, name) is None:
             return "Say --packages FOLDER for a folder that holds both, or put the mesh beside the file"
         return "Put the mesh beside the file"

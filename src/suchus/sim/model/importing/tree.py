@@ -113,6 +113,7 @@ def _is_cap(ball: ShapePiece, rods: list[ShapePiece]) -> bool:
 
 MIN_MASS = 1e-9
 """Masses up to this are none: MuJoCo was asked to fill missing ones with a tenth of it [kg]."""
+_MAX_SIZE = 100.0  # [m]
 _MIN_INERTIA = 1.001 * float(MUJOCO["boundinertia"])  # moments up to this are none
 JOINED = 1e-6
 """Hinges nearer than this share of a robot's size sit in one point [-]."""
@@ -375,8 +376,13 @@ def _weighed(tree: Tree) -> Tree:
             f"{len(names)} of {len(tree.parts)} parts have no mass ({', '.join(names[:4])}): no <inertial> and no "
             "shape that is read, as where there are only meshes; give each an <inertial>."
         )
+    if tree.size > _MAX_SIZE:
+        raise UnreadableFile(
+            f"the robot is {tree.size:.4g} m long or wide; at most {_MAX_SIZE:g} m is allowed: its lengths seem to be "
+            "in millimetres, metres are needed; scale positions, shapes and meshes by 0.001."
+        )
     require("the imported robot", "mass", tree.mass, 1e-6, 1e5, "kg")
-    require("the imported robot", "size", tree.size, 1e-3, 100.0, "m")
+    require("the imported robot", "size", tree.size, 1e-3, _MAX_SIZE, "m")
     if not names:
         return tree
     weighted_parts = tuple(replace(tree_part, mass=tree_part.mass or 1e-3 * tree.mass) for tree_part in tree.parts)

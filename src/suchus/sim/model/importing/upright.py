@@ -16,6 +16,7 @@ UP_AXES = ("z", "y", "x", "-z", "-y", "-x")
 """Axes of a file that may point up."""
 _LEVEL_TOLERANCE = 0.1  # of the size; feet whose heights differ by less are level
 _MIN_DEPTH = 0.3  # of the size; how far two feet alone must hang below the root to say which axis is up
+_MIN_LEGS, _OVERHEAD = 4, 0.1  # feet, and their height above the root [size], from which on z points down
 _SIDE_TOLERANCE = 0.02  # of the size; feet that lie less to one side of the root do not say the sense of up
 _MAX_SLOPE_COSINE = 0.8  # of the angle between gravity and an axis
 _CHAIN_RATIO = 3.0  # height of a chain over its length, above which it stands
@@ -48,17 +49,22 @@ def upright(tree: Tree, up: str | None, gravity: tuple[float, float, float] | No
         return _turned(tree, by_gravity, f"Up: the file's {by_gravity} axis, against its gravity; the draft has z up.")
     if _is_vertical_chain(tree):
         raise UnreadableFile(
-            "its hinges follow each other along z, which points up: an axis lies from front to rear; say which axis of "
-            "the file points up instead: --up x or --up y."
+            "its hinges follow each other along z, which points up: an axis lies from front to rear. If it is a snake "
+            "that is drawn standing, say which axis points up instead, --up x or --up y; an arm on a base is no robot "
+            "that suchus takes."
         )
     by_feet = _up_by_feet(tree)
     if by_feet == "z":
         return tree
+    reason = (
+        "all of its feet lie above its root along z"
+        if by_feet == "-z"
+        else "its feet are level along it and not along z"
+    )
     return _turned(
         tree,
         by_feet,
-        f"Guess: up is the file's {by_feet} axis, since its feet are level along it and not along z; the draft has z "
-        "up. If that is wrong, say --up z.",
+        f"Guess: up is the file's {by_feet} axis, since {reason}; the draft has z up. If that is wrong, say --up z.",
     )
 
 
@@ -98,7 +104,8 @@ def _up_by_feet(tree: Tree) -> str:
     offsets = feet - tree.parts[0].com
     spreads = {axis: float(np.ptp(offsets @ direction)) / tree.size for axis, direction in _AXES.items()}
     if spreads["z"] <= _LEVEL_TOLERANCE:
-        return "z"
+        min_height = float(np.min(offsets @ _AXES["z"]))
+        return "-z" if len(feet) >= _MIN_LEGS and min_height > _OVERHEAD * tree.size else "z"
     axis = min(("y", "x"), key=lambda candidate: (spreads[candidate] > _LEVEL_TOLERANCE, -_depth(offsets, candidate)))
     min_depth = _MIN_DEPTH * tree.size if len(feet) == 2 else 0.0
     if spreads[axis] > _LEVEL_TOLERANCE or _depth(offsets, axis) < min_depth:
