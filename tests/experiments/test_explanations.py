@@ -24,7 +24,6 @@ DEFINED = {
     "feedback": {"90"},  # the quantile in per cent that cycles_to_converge is
     "spine_kinematics": {"60.5", "0.5"},  # of the printed equation (15)
     "swim_free": {"1", "95"},  # the radius with which that of the turn is compared [m]; the confidence in per cent
-    "swimming": {"2"},  # per cent, above which the noise of the force is said
     "terrain": {"5"},  # per cent, within which switching_grounds_within_5_percent counts
 }
 """Numbers in words that are no results: they define what is said."""
