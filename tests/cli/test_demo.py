@@ -45,7 +45,7 @@ def test_without_a_browser_a_page_is_written_and_named(short, capsys, opener):
     page = short / "suchus_demo.html"
     assert list(short.glob("[!.]*")) == [page]
     assert f"the walk, in any browser: {page}" in out
-    assert page.read_text().startswith("<!doctype html>")
+    assert page.read_text().startswith("<!DOCTYPE html>")
     told = {name: float(far) for name, far in re.findall(r"^  (.*?) +[-\d.]+ m/s, ([-\d.]+) m forward$", out, re.M)}
     assert list(told) == ["belly crawl", "limbs only"]
     assert told["belly crawl"] > 2 * told["limbs only"] > 0

@@ -105,7 +105,7 @@ def test_no_command_takes_a_file_that_is_none(name, desk, capsys):
 def test_export_takes_it_and_says_once_what_was_guessed(name, desk, capsys):
     assert main(["export", "--robot", name, "--format", "urdf", "--out", "out"]) == 0
     told = capsys.readouterr()
-    assert told.err.count("note: Front: the file's x axis") == 1
+    assert told.err.count("note: Front: along the file's x axis") == 1
     assert (desk / "out" / f"{Path(name).stem}.urdf").is_file()
     assert not (desk / "walker.toml").exists()
 

@@ -16,23 +16,30 @@ PAGE = (Path(__file__).parents[2] / "docs" / "robots_from_files.md").read_text()
 
 def blocks(language):
     fenced = (block.partition("\n") for block in PAGE.split("```")[1::2])
-    return [text for first, _, text in fenced if first == language]
+    return [text for first, _, text in fenced if first.partition(" ")[0] == language]
+
+
+def titled(name):
+    """Return the text of the block with a file's name as its title."""
+    return PAGE.partition(f'```toml title="{name}"\n')[2].partition("```")[0]
 
 
 @pytest.fixture
 def desk(tmp_path, monkeypatch):
     """A folder with the two files of the page."""
     monkeypatch.chdir(tmp_path)
-    robot, gait = blocks("toml")
-    Path("my_robot.toml").write_text(robot)
-    Path("my_gait.toml").write_text(gait)
+    for name in ("my_robot.toml", "my_gait.toml"):
+        Path(name).write_text(titled(name))
 
 
 @pytest.mark.usefixtures("desk")
 def test_the_commands_of_the_page_choose_its_robot_and_gait():
-    commands = [line.split() for block in blocks("") for line in block.splitlines() if line.startswith("suchus run")]
+    lines = (line.partition("#")[0].strip() for block in blocks("sh") for line in block.splitlines())
+    commands = {
+        line for line in lines if line.startswith("suchus run") and line.endswith(("my_robot.toml", "my_gait.toml"))
+    }
     assert len(commands) == 2
-    for _, _, name, *words in commands:
+    for _, _, name, *words in map(str.split, commands):
         question = choose(EXPERIMENTS[name], name, words).experiment
         if "--robot" in words:
             assert question.robot.name == "my_robot"

@@ -81,7 +81,7 @@ def test_figures_are_drawn_from_the_record(outcome):
 
 def test_a_short_stand_is_not_judged_and_says_what_a_long_one_needs(outcome):
     assert outcome.verdicts == ()
-    assert outcome.unjudged == "Not judged: hold is 1, and 10 at least are needed to meet what is judged."
+    assert outcome.unjudged == "Not judged: hold is 1 s, and 10 s at least are needed to meet what is judged."
     full = EXPERIMENTS["bipedal_reach"]
     assert full.unjudged() == ""
     assert replace(full, robot=ROBOTS["long_tail"]).unjudged().startswith("Not judged: robot is long_tail")

@@ -204,6 +204,6 @@ def test_terrain_and_speed_are_judged_only_by_runs_that_meet_what_is_judged():
     terrain, speeds = EXPERIMENTS["terrain"], EXPERIMENTS["speed_range"]
     assert terrain.unjudged() == speeds.unjudged() == ""
     assert "surfaces is even, and" in replace(terrain, surfaces=("even",)).unjudged()
-    assert "walked is 13.9, and 14 at least" in replace(terrain, walked=13.9).unjudged()
+    assert "walked is 13.9 s, and 14 s at least" in replace(terrain, walked=13.9).unjudged()
     assert "stones has 2 values, and 3 at least" in replace(terrain, stones=(0.04, 0.06)).unjudged()
     assert "gaits is semi_erect, and" in replace(speeds, gaits=(GAITS["semi_erect"],)).unjudged()

@@ -38,7 +38,7 @@ BAD = {
     "no XML": ("solid cube\n", "is no XML"),
     "cut off": (quadruped()[:-300], "is no XML"),
     "other XML": ("<html><body/></html>", "it begins with <html>"),
-    "sdf": ('<sdf version="1.7"><model/></sdf>', "it begins with <sdf>"),
+    "sdf": ('<sdf version="1.7"><model/></sdf>', "is an SDF, which is not read"),
     "xacro": ('<robot xmlns:xacro="x"><xacro:leg/></robot>', "expand it first"),
     "bomb": (f"<!DOCTYPE r [{BOMB}]><robot name='&i;'/>", "declares a document type"),
     "external entity": (
@@ -81,7 +81,7 @@ BAD = {
     "mountain": (urdf(link("a", 1e9, BALL), link("b", 1.0, BALL), ARM), "1e-06 to 100000 kg is allowed"),
     "negative": (urdf(link("a", -1.0, BALL), link("b", 1.0, BALL), ARM), "<mass value='-1.0'> is not allowed"),
     "nan": (urdf(link("a", "nan", BALL), link("b", 1.0, BALL), ARM), "<mass value='nan'> is not allowed"),
-    "no number": (urdf(link("a", "heavy", BALL), link("b", 1.0, BALL), ARM), "<mass value='heavy'> is not allowed"),
+    "no number": (urdf(link("a", "heavy", BALL), link("b", 1.0, BALL), ARM), "holds 'heavy', which is no number"),
     "far away": (urdf(link("a"), link("b"), ARM.replace("0.1", "inf")), "finite numbers are needed"),
     "stiff": (re.sub(r'range="[-.0-9]+ [.0-9]+"', 'range="-0.01 0.01"', skewed()), "nothing is left that could move"),
     "no plane": (zigzag(), "no vertical plane mirrors its hinges"),

@@ -345,7 +345,7 @@ def test_meshes_in_the_folder_give_shapes_and_others_are_told(tmp_path):
     with pytest.raises(UnreadableFile, match=r"the shape of link base is a mesh that was not read: .*lies outside"):
         read(named, tmp_path)
     outside = read(named, tmp_path, without_meshes=True)
-    assert "1 meshes were not read" in told(outside)
+    assert "1 mesh was not read" in told(outside)
     assert "base has no shape that is read" in told(outside)
 
 

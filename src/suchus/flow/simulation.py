@@ -266,6 +266,7 @@ class Simulation(Fields):
         Raises:
             OutsideLimits: a fixed step is asked for in which water or a body moves by more than a cell.
         """
+        self._set_first_speed()
         if not self._log.rows and not any(swimmer.added_mass.any() for swimmer in self.swimmers.values()):
             self._prepare_free_bodies(self.water.offset)
         limit = self._limit(max(self._fastest if self._log.rows else self.water.fastest(), self._speed))
@@ -355,6 +356,12 @@ class Simulation(Fields):
             mass = added_mass(self.water, self._outlines[number], point, self.setup.density, number, free_degrees)
             swimmer.set_added_mass(mass, self.time)
 
+    def _set_first_speed(self) -> None:
+        """Before the first step, take the speeds of the water and of what the sides impose, as of a lid that moves."""
+        if not self._log.rows:
+            self._reference = self.water.fastest()
+            self._speed = max(self._speed, self._reference, self.water.imposed(self.time))
+
     def _limit(self, fastest: float) -> float:
         """Return the time step at which the fastest water crosses one cell, with a margin for friction [s]."""
         return self.setup.grid.cell / (fastest + 2 * self.ndim * float(self.water.nu))
@@ -371,9 +378,7 @@ class Simulation(Fields):
             OutsideLimits: ``dt`` is not positive, or water or a body would move by more than a cell.
         """
         numba.set_num_threads(min(self._threads, numba.config.NUMBA_NUM_THREADS))
-        if not self._log.rows:
-            self._reference = self.water.fastest()
-            self._speed = max(self._speed, self._reference, self.water.imposed(self.time))
+        self._set_first_speed()
         dt = self.next_step() if dt is None else dt
         if not (is_number(dt) and isfinite(dt) and dt > 0):
             raise OutsideLimits(

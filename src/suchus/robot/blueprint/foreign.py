@@ -53,6 +53,8 @@ def check_robot_format(path: str | Path, *, is_import: bool = False) -> None:
     text = _REMEDIES.get(path.suffix.lower()) or (_SDF if root_element(path) == "sdf" else None)
     if text is not None:
         stem = path.name.partition(".")[0]
+        if path.name in (f"{stem}.xml", f"{stem}.urdf"):  # what is written is another file than what is read
+            stem = f"{stem}_converted"
         raise UnreadableFile(f"{path} {text.format(name=path.name, stem=stem)}.")
 
 

@@ -73,13 +73,14 @@ _OVERHEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<!--.*?-->|<metadata>.*?</me
 _PLAIN_TEXT = "data:image/svg+xml,"
 
 
-def embedded(svg: Path, png: Path) -> Markup:
+def embedded(svg: str | Path, png: str | Path) -> Markup:
     """Return a figure as a data URI: as a drawing, or as pixels if it is heavy and these are lighter.
 
     Args:
         svg: the figure as a drawing.
         png: the figure as pixels.
     """
+    svg, png = Path(svg), Path(png)
     drawing = as_drawing(svg.read_text(encoding="utf-8"))
     if len(drawing) <= _HEAVY or not png.is_file():
         return drawing
@@ -141,7 +142,7 @@ def embed_json(values: Mapping[str, Any] | Sequence[Any]) -> Markup:
     return Markup(json.dumps(values, separators=(",", ":")).replace("<", "\\u003c"))
 
 
-def render(template: str, page_folder: Path | None = None, **content: Any) -> str:
+def render(template: str, page_folder: str | Path | None = None, **content: Any) -> str:
     """Return a page as text.
 
     Args:
@@ -149,7 +150,8 @@ def render(template: str, page_folder: Path | None = None, **content: Any) -> st
         page_folder: the folder of the page, from which it links files; None: the one that holds their folders.
         **content: what the template names.
     """
-    known = {"version": versions()["suchus"], "origin": origin_text(), "page_folder": page_folder}
+    folder = None if page_folder is None else Path(page_folder)
+    known = {"version": versions()["suchus"], "origin": origin_text(), "page_folder": folder}
     return _environment().get_template(template).render(known | content) + "\n"
 
 
