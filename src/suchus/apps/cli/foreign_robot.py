@@ -47,6 +47,11 @@ def print_notes() -> None:
     _pending_notes.clear()
 
 
+def drop_notes() -> None:
+    """Drop what was guessed for a command that was refused before it printed that."""
+    _pending_notes.clear()
+
+
 @lru_cache(maxsize=8)
 def _draft(absolute_path: str, word: str, stamp: int) -> Any:
     """Return the draft of a file as it was at a time.

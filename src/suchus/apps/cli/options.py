@@ -13,7 +13,7 @@ import tyro
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from suchus.apps.cli.entry import BadCommand
-from suchus.apps.cli.foreign_robot import print_notes, resolve_robot
+from suchus.apps.cli.foreign_robot import drop_notes, print_notes, resolve_robot
 from suchus.apps.cli.word_checks import option_values
 from suchus.core.errors import SuchusError, UnknownName
 from suchus.experiments.experiment import Experiment
@@ -168,6 +168,7 @@ def parse(
         BadCommand: an option or a value makes no sense.
         SystemExit: help was asked for, and printed.
     """
+    drop_notes()
     box = io.StringIO()
     names = names or [f.name for f in fields(options)]  # type: ignore[arg-type]
     settings: Any
