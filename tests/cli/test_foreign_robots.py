@@ -10,6 +10,7 @@ import pytest
 import suchus
 from suchus.apps.cli import main, options
 from suchus.apps.cli.entry import COMMANDS
+from suchus.apps.cli.foreign_robot import resolve_robot
 from suchus.core.errors import UnreadableFile
 from suchus.robot.robots import ROBOTS
 
@@ -55,8 +56,9 @@ def read_options(monkeypatch):
         raise ReadOptionsError(true_parse(*args, **named))
 
     true_parse = options.parse
-    modules = {command.function.partition(":")[0] for command in TAKES_ROBOT.values()} | {options.__name__}
-    for module in map(import_module, modules):
+    names = {command.function.partition(":")[0] for command in TAKES_ROBOT.values()} | {options.__name__}
+    modules = [import_module(name) for name in names]  # all before the first change, which a later import would keep
+    for module in modules:
         if hasattr(module, "parse"):
             monkeypatch.setattr(module, "parse", parse)
 
@@ -99,6 +101,13 @@ def test_no_command_takes_a_file_that_is_none(name, desk, capsys):
         assert (out, err.count("\n")) == ("", 1)
         assert file in err
     assert sorted(desk.rglob("*")) == before
+
+
+@pytest.mark.usefixtures("desk")
+def test_what_was_guessed_for_a_refused_command_is_not_said_later(capsys):
+    resolve_robot("walker.urdf")
+    assert main(["optimise", "no_such_search.toml"]) == 2
+    assert "note:" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["walker.urdf", "minnow.xml"])

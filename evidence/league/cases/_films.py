@@ -6,7 +6,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from evidence.league import Numbers
+from evidence.league import Given, Numbers
+from evidence.league.cases._water import fresh
 from evidence.league.swims import ModelSwimmer, waters
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot
@@ -140,3 +141,21 @@ def filmed_swimmer(
 def filmed_swing(numbers: Numbers) -> float:
     """Return the filmed way of the tail's tip from side to side [m]."""
     return numbers["tail"] * numbers["length"]
+
+
+def water_of_long_swimmers(end: str) -> dict[str, Given]:
+    """Return the water of a swimmer without limbs whose sections are ellipses.
+
+    Args:
+        end: what is known of the end of its tail, as a clause.
+    """
+    return fresh(
+        drag=(1.1, 0.8, 1.8),
+        rub=(1.5, 1.0, 3.0),
+        shed=(0.7, 0.3, 1.0),
+        why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
+        "(docs/amphibious.md)",
+        why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
+        "204, 81 [memory]); up to 3 for what fins and nose add",
+        why_shed=f"Lighthill's momentum leaves at a thin trailing edge; {end}",
+    )

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
-from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing
-from evidence.league.cases._water import fresh
+from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing, water_of_long_swimmers
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 
@@ -60,16 +59,7 @@ contestant = SingleContestant(
             "wide": Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the drawn width: {_DRAWING}"),
             "high": Given(value=1.0, low=0.8, high=1.25, unit="-", source=f"factor on the drawn height: {_DRAWING}"),
         }
-        | fresh(
-            drag=(1.1, 0.8, 1.8),
-            rub=(1.5, 1.0, 3.0),
-            shed=(0.7, 0.3, 1.0),
-            why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
-            "(docs/amphibious.md)",
-            why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
-            "204, 81 [memory]); up to 3 for what fins and nose add",
-            why_shed="Lighthill's momentum leaves at a thin trailing edge; the fin is round at its end",
-        ),
+        | water_of_long_swimmers("the fin is round at its end"),
         predicts={"speed": Quantity(unit="body length/s", words="mean speed")},
         rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=10, filmed_swing=filmed_swing)),
         find_unsteadiness=_unsteadiness,

@@ -3,9 +3,8 @@
 from collections.abc import Mapping
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
-from evidence.league.cases._films import filmed_swimmer, filmed_swing
-from evidence.league.cases._water import fresh
-from evidence.league.cases.lamprey import BODY
+from evidence.league.cases._films import filmed_swimmer, filmed_swing, water_of_long_swimmers
+from evidence.league.cases.lamprey import BODY, POSITIONS, SHAPE
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 
@@ -14,8 +13,6 @@ _FILM = (
     "github.com/tytell/fishmechr, lampreydata (CC BY 4.0) [computed here]"
 )
 _DRAWING = "as for the lampreys of lamprey_1"
-_POSITIONS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
-_SHAPE = (0.20, 0.13, 0.20, 0.37, 0.50, 0.59, 0.66, 0.73, 0.79, 0.86, 1.0)
 FREQUENCY, WAVELENGTH = 3.81, 0.665
 """Filmed beat [Hz] and length of a whole wave [body length]."""
 
@@ -23,7 +20,7 @@ FREQUENCY, WAVELENGTH = 3.81, 0.665
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the lamprey with its filmed wave."""
     del frequency
-    return filmed_swimmer(BODY, _POSITIONS, _SHAPE, numbers)
+    return filmed_swimmer(BODY, POSITIONS, SHAPE, numbers)
 
 
 def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
@@ -58,16 +55,7 @@ contestant = SingleContestant(
             "wide": Given(value=0.8, low=0.6, high=1.0, unit="-", source=f"factor on the drawn width, {_DRAWING}"),
             "high": Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the drawn height, {_DRAWING}"),
         }
-        | fresh(
-            drag=(1.1, 0.8, 1.8),
-            rub=(1.5, 1.0, 3.0),
-            shed=(0.7, 0.3, 1.0),
-            why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
-            "(docs/amphibious.md)",
-            why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
-            "204, 81 [memory]); up to 3 for what fins and nose add",
-            why_shed="Lighthill's momentum leaves at a thin trailing edge; the fin is round at its end and low",
-        ),
+        | water_of_long_swimmers("the fin is round at its end and low"),
         predicts={"stride": Quantity(unit="body length", words="stride, the way in a beat")},
         rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=10, filmed_swing=filmed_swing)),
         find_unsteadiness=_unsteadiness,

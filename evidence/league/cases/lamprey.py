@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Quantity
-from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing
-from evidence.league.cases._water import fresh
+from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing, water_of_long_swimmers
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 from suchus.core.errors import InvalidDesign
@@ -23,8 +22,9 @@ _DRAWING = (
     "would weigh 1.8 g, and animals of this length weigh 3 to 4.5 g [memory]; height 8 mm in show_viscosity_kinematics "
     "of the first repository; outline of the fins from memory"
 )
-_POSITIONS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
-_SHAPE = (0.20, 0.13, 0.20, 0.37, 0.50, 0.59, 0.66, 0.73, 0.79, 0.86, 1.0)
+POSITIONS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+SHAPE = (0.20, 0.13, 0.20, 0.37, 0.50, 0.59, 0.66, 0.73, 0.79, 0.86, 1.0)
+"""Where the envelope was filmed [body length], and amplitude there over that of the tail\'s tip [-]."""
 BODY = LongBody(
     name="lamprey",
     stations=(0.0, 0.05, 0.10, 0.30, 0.50, 0.60, 0.70, 0.80, 0.90, 0.97, 1.0),
@@ -40,7 +40,7 @@ _ERRORS = {1.0: (0.30, 0.021, 0.0033), 10.0: (0.51, 0.040, 0.0074), 20.0: (0.31,
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the lamprey with its filmed wave."""
     del frequency
-    return filmed_swimmer(BODY, _POSITIONS, _SHAPE, numbers)
+    return filmed_swimmer(BODY, POSITIONS, SHAPE, numbers)
 
 
 def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
@@ -50,7 +50,7 @@ def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found
     return {"stride": swum.speed / swum.frequency / length, "speed": swum.speed / length}
 
 
-def at(viscosity: float) -> Contestant:
+def in_viscosity(viscosity: float) -> Contestant:
     """Return the lamprey in water of a viscosity.
 
     Args:
@@ -82,16 +82,7 @@ def at(viscosity: float) -> Contestant:
     )  # fmt: skip
     given["wide"] = Given(value=0.8, low=0.6, high=1.0, unit="-", source=f"factor on the drawn width: {_DRAWING}")
     given["high"] = Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the drawn height: {_DRAWING}")
-    water = fresh(
-        drag=(1.1, 0.8, 1.8),
-        rub=(1.5, 1.0, 3.0),
-        shed=(0.7, 0.3, 1.0),
-        why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
-        "(docs/amphibious.md)",
-        why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
-        "204, 81 [memory]); up to 3 for what fins and nose add",
-        why_shed="Lighthill's momentum leaves at a thin trailing edge; the fin is round at its end and low",
-    )
+    water = water_of_long_swimmers("the fin is round at its end and low")
     thick = {
         "viscosity": Given(
             value=1e-6 * viscosity, low=0.9e-6 * viscosity, high=1.15e-6 * viscosity, unit="m2/s",
@@ -130,5 +121,5 @@ contestant = ContestantFamily(
     low=1.0,
     high=20.0,
     parameter_label="times the viscosity of water",
-    create=partial(at),
+    create=in_viscosity,
 )
