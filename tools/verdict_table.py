@@ -14,8 +14,9 @@ from typing import Any
 from evidence import renew, store
 from pages import article
 from pages.stated import kept, templates, wrapped
+from suchus.article.paper import CLAIMS
 from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
-from suchus.article.verdict.judging import fragile
+from suchus.article.verdict.judging import fragile, shown_unit
 from suchus.core.errors import IncompatibleRecord
 from suchus.experiments.claims import RULES
 
@@ -41,7 +42,8 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
             found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
-    for claim, row in found.items():  # of the shares that ship today, whatever shipped when it was run
+    for claim, row in found.items():  # of the rules and shares that ship today, whatever shipped when it was run
+        row["unit"] = shown_unit(RULES[claim], CLAIMS[claim]) if claim in RULES else row["unit"]
         row["fragile"] = claim in RULES and fragile(
             RULES[claim], row["verdict"], SHARES.get(claim) or SPARSE_SHARES.get(claim)
         )
@@ -57,9 +59,14 @@ def judged_again() -> dict[str, dict[str, Any]]:
     for rule in RULES.values():
         if rule.experiment in store.names():
             verdict = judge(rule, kept(rule.experiment))
-            row = {"verdict": verdict.verdict, "measured": verdict.measured, "low": verdict.low, "high": verdict.high}
+            row: dict[str, Any] = {
+                "verdict": verdict.verdict,
+                "measured": verdict.measured,
+                "low": verdict.low,
+                "high": verdict.high,
+            }
             models = ladder.rows(verdict.voices, rule.form)
-            row |= {"unit": verdict.claim.unit, "fragile": verdict.fragile, "why": verdict.why}
+            row |= {"unit": verdict.unit, "fragile": verdict.fragile, "why": verdict.why}
             found[rule.claim] = row | ({"models": models} if models else {})
     return found
 

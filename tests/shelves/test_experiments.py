@@ -56,6 +56,16 @@ def test_its_measures_are_numbers_with_units(quick):
         assert measure.unit, name
 
 
+def test_its_rules_say_what_they_measure_in_the_unit_of_the_measure(quick):
+    _, outcome = quick
+    for verdict in outcome.verdicts:
+        rule = verdict.rule
+        assert len(rule.definition.split()) >= 3, rule.claim
+        assert rule.definition[-1] not in ".]", rule.claim
+        if rule.measure in outcome.measures:
+            assert (rule.unit or verdict.claim.unit) == outcome.measures[rule.measure].unit, rule.claim
+
+
 def test_no_measure_overwrites_another(quick):
     """``Measures`` refuse a second number of a name; mypy holds whoever says that it returns them to it."""
     experiment, outcome = quick

@@ -312,7 +312,7 @@ def _foam(robot: Robot) -> list[BodyPart]:
     foam_parts = []
     for foam_block in (foam for foam in hull.foam if foam.volume > 0.0):
         side = foam_block.volume ** (1 / 3)
-        description = f"{1e6 * foam_block.volume:.0f} cm3 around the body, raised by {1000 * foam_block.raised:.0f} mm"
+        description = f"{1e6 * foam_block.volume:.0f} cm³ around the body, raised by {1000 * foam_block.raised:.0f} mm"
         foam_parts.append(BodyPart(body=foam_block.body, name=f"{foam_block.body}_foam", kind="foam",
                           size=(side, side, side),
                           mass=hull.density * foam_block.volume,

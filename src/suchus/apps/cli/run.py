@@ -17,7 +17,7 @@ from suchus.apps.cli.options import TABLES, choose
 from suchus.apps.cli.shelves import entry, title
 from suchus.apps.cli.terminal import working
 from suchus.apps.report import OUTCOME, PAGE, answer, answer_rows, check_place, quantity, save_outcome
-from suchus.article.verdict import Verdict, listed
+from suchus.article.verdict import listed
 from suchus.core.errors import plain_warnings
 from suchus.core.files import check_writable, write_tables
 from suchus.core.progress import Progress
@@ -118,7 +118,7 @@ def show_outcome(question: Experiment, saved_run: SavedRun) -> None:
             table.add_row(
                 escape(f"{claim.quantity} ({claim.place})"),
                 quantity(claim.value, claim.unit, 3),
-                quantity(verdict.measured, _unit(verdict, saved_run.outcome), 3),
+                quantity(verdict.measured, verdict.unit, 3),
                 f"[{_COLOURS[verdict.verdict]}]{verdict.verdict}[/]{', fragile' if verdict.fragile else ''}",
             )
         console.print(table)
@@ -127,12 +127,6 @@ def show_outcome(question: Experiment, saved_run: SavedRun) -> None:
     console.print(
         f"{saved_run.seconds:.1f} s; the page with all of it: {escape(str(saved_run.folder / PAGE))}", soft_wrap=True
     )
-
-
-def _unit(verdict: Verdict, outcome: Outcome) -> str:
-    """Return the unit of what was measured: of a statement, which prints no number, that of the rule's measure."""
-    measure = outcome.measures.get(verdict.rule.measure)
-    return verdict.claim.unit if verdict.claim.value is not None or measure is None else measure.unit
 
 
 def gait_sentence(question: Experiment) -> list[str]:

@@ -170,11 +170,11 @@ def floating_sentence(sheet: Sheet) -> str:
     foam = sum(volume for _, volume, _ in floating.foam)
     if floating.lacking > 0.0:
         return (
-            f"It sinks: {1e6 * floating.lacking:.0f} cm3 of foam are lacking, in proportion to the weight of each "
+            f"It sinks: {1e6 * floating.lacking:.0f} cm³ of foam are lacking, in proportion to the weight of each "
             "body; suchus.robot.design.flotation.float_hull says how much goes where."
         )
-    air = f", and {1e6 * floating.air:.0f} cm3 of air can be let out" if floating.air else ""
-    return f"It floats with {-1e6 * floating.lacking:.0f} cm3 above the surface, by {1e6 * foam:.0f} cm3 of foam{air}."
+    air = f", and {1e6 * floating.air:.0f} cm³ of air can be let out" if floating.air else ""
+    return f"It floats with {-1e6 * floating.lacking:.0f} cm³ above the surface, by {1e6 * foam:.0f} cm³ of foam{air}."
 
 
 def _content(sheet: Sheet, gait: Gait, picture: dict[str, str], outlines: bool) -> dict[str, object]:

@@ -165,12 +165,27 @@ class Verdict:
     """What designs say that are too few to know a share; None where a share is known, or no design was asked."""
 
     @property
+    def unit(self) -> str:
+        """Unit of what was measured: that of the printed number, or of the rule's measure where none is printed."""
+        return shown_unit(self.rule, self.claim)
+
+    @property
     def fragile(self) -> bool:
         """Whether too many other plausible designs give another answer than this verdict.
 
         Values that were chosen for one design, or follow from its construction, are not fragile.
         """
         return fragile(self.rule, self.verdict, self.share or self.too_few)
+
+
+def shown_unit(rule: Rule, claim: Claim) -> str:
+    """Return the unit of what is measured: that of the printed number, or of the rule's measure where none is printed.
+
+    Args:
+        rule: the claim's.
+        claim: the statement.
+    """
+    return claim.unit if claim.value is not None else rule.unit or claim.unit
 
 
 def fragile(rule: Rule, word: str, designs: Share | SparseShare | None) -> bool:

@@ -211,6 +211,10 @@ class Rule:
     """Name of the experiment whose measures it reads."""
     measure: str
     """Which measure stands beside the printed number, or says most about the statement."""
+    definition: str = ""
+    """What this measure is, for people: a noun phrase; empty in rules that say no more than the measure's name."""
+    unit: str = ""
+    """Unit of this measure; empty where it is that of the claim."""
     kind: Kind = "measured"
     """Kind of evidence for the claim."""
     holds: tuple[Clause, ...] = ()

@@ -15,6 +15,8 @@ RULES = (
         claim="height_crawl",
         experiment="bipedal_reach",
         measure="reach_crawl",
+        definition="height of the top of the back in the crawl",
+        unit="m",
         holds=(
             Clause(
                 "hips_at_printed_height",
@@ -34,6 +36,8 @@ RULES = (
         claim="height_standing",
         experiment="bipedal_reach",
         measure="reach_standing",
+        definition="least height of the snout while the robot stands on hind legs and tail",
+        unit="m",
         kind="fitted",
         holds=(
             Clause("reach_ratio", ">", 1.0, "standing reaches higher than crawling"),
@@ -51,6 +55,7 @@ RULES = (
         claim="height_ratio",
         experiment="bipedal_reach",
         measure="reach_ratio",
+        definition="height of the stand over that of the crawl",
         kind="fitted",
         holds=(Clause("reach_ratio", ">", 2.0, "several times as high is more than twice"),),
         spread=("reach_ratio",),
@@ -62,6 +67,7 @@ RULES = (
         claim="height_from_legs",
         experiment="bipedal_reach",
         measure="gain_leg_crawling",
+        definition="gain of the crawl's height over the gain of the legs' length",
         kind="construction",
         holds=(
             Clause("gain_leg_crawling", ">=", 0.1, "less than a tenth of what the legs grow by is no dependence"),
@@ -76,6 +82,7 @@ RULES = (
         claim="height_from_spine_head_legs",
         experiment="bipedal_reach",
         measure="gain_least_standing",
+        definition="least gain of the stand's height over the gain of hind legs, spine or head in length",
         holds=(
             Clause(
                 "gain_least_standing",

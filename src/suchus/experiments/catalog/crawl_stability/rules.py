@@ -32,6 +32,8 @@ RULES = (
         claim="com_fluctuation",
         experiment="crawl_stability",
         measure="com_height_pp_change_tail_lifted",
+        definition="relative change, by spine and tail, of the highest less the lowest height of the centre of "
+        "mass, from limbs only with the tail in the air",
         holds=(Clause("com_height_pp_change_tail_lifted", "<", 0.0, _STEADINESS_REASON, _VISIBLE_CHANGE),),
         control=_TAIL_LIFTED_GROUP,
         spread=("com_height_pp_change_tail_lifted", "hind_duty_limbs_tail_lifted"),
@@ -51,6 +53,9 @@ RULES = (
         claim="com_on_support_line",
         experiment="crawl_stability",
         measure="line_distance_max_limbs_tail_lifted",
+        definition="greatest distance of the centre of mass from the line of the two supporting feet, limbs only, "
+        "tail in the air",
+        unit="m",
         holds=(
             Clause(
                 "line_distance_max_limbs_tail_lifted", "<=", 0.024, "a foot is 24 mm wide: farther off is off the line"
@@ -67,6 +72,8 @@ RULES = (
         claim="tilt_limbs_only",
         experiment="crawl_stability",
         measure="lean_on_two_feet_limbs_tail_lifted_1200_ms",
+        definition="lean of the pelvis on two feet at 1.2 s, limbs only, tail in the air",
+        unit="rad",
         holds=(
             Clause("lean_limbs_tail_lifted_1200_ms", ">=", radians(1.0), "the least tilt that a screenshot shows"),
             Clause(
@@ -95,6 +102,8 @@ RULES = (
         claim="tail_supports",
         experiment="crawl_stability",
         measure="tail_contact_pp_change",
+        definition="relative change, by a tail on the ground, of the highest less the lowest height of the centre "
+        "of mass, from the same crawl with the tail in the air",
         holds=(
             Clause(
                 "tail_load_share_coordinated",
@@ -122,6 +131,8 @@ RULES = (
         claim="wagging_balances",
         experiment="crawl_stability",
         measure="wagging_pp_change",
+        definition="relative change, by a tail that swings, of the highest less the lowest height of the centre of "
+        "mass, from a tail that is dragged without a swing",
         holds=(Clause("wagging_pp_change", "<", 0.0, _STEADINESS_REASON, _VISIBLE_CHANGE),),
         control=ControlGroup(
             group="tail_still", why="What wags balances: the same crawl whose tail is dragged without it."
@@ -136,6 +147,7 @@ RULES = (
         claim="spine_sinusoidal",
         experiment="crawl_stability",
         measure="spine_sine_r2",
+        definition="share of the variance of the spine's joint angles that a sine explains",
         kind="construction",
         holds=(Clause("spine_sine_r2", ">=", 0.95, "a triangle has 0.986 of its variance in a sine, a square 0.81"),),
         why="A sine is commanded; {spine_sine_r2:.1%} of the variance of the joints' angles follow it.",

@@ -21,6 +21,7 @@ RULES = (
         claim="feedback_rules",
         experiment="feedback",
         measure="converged_cross_load",
+        definition="share of starts at random phases from which the limbs find the gait",
         holds=(
             Clause("converged_cross_load", ">=", 0.95, "limbs: of random starts, all but one in twenty"),
             Clause("converged_wrong_sign", "<", 0.05, "limbs: the same rule with the wrong sign must fail"),
@@ -50,6 +51,8 @@ RULES = (
         claim="shared_variables",
         experiment="feedback",
         measure="way_gain_shared",
+        definition="displacement in a cycle after a random start, with shared phases less without",
+        unit="m",
         holds=(
             Clause("way_gain_shared", ">", 0.0, "a coordinated body gets farther in a cycle", PRINTED_DISPLACEMENT),
             Clause("way_shared_least", ">", "way_isolated_least", "from the worst start too"),

@@ -8,6 +8,7 @@ RULES = (
         claim="gallop_fastest",
         experiment="gallop_limits",
         measure="bound_over_walk",
+        definition="speed of the fastest bound over that of the fastest walk, with the robot's servos",
         kind="animals",
         holds=(
             Clause("bound_over_walk", ">", 1.0, "the fastest gait outruns the others"),

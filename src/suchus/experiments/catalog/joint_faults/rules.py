@@ -76,6 +76,7 @@ def _fault_rule(joint: str, group: str, clauses: tuple[Clause, ...]) -> Rule:
         claim=f"fault_{joint}_{group}",
         experiment="joint_faults",
         measure=measure_name,
+        definition="relative change of displacement from the intact robot with spine and tail, with one joint limp",
         kind="fitted" if f"fault_{joint}_{group}" in _FITTED_CLAIMS else "measured",
         holds=tuple(Clause(measure_name, clause.relation, clause.bound, clause.why) for clause in clauses),
         control=_INTACT_GROUP,
@@ -128,6 +129,7 @@ RULES = (
         claim="fault_support",
         experiment="joint_faults",
         measure="support_share_limp",
+        definition="part of the load on tail, right front and left hind foot while the damaged leg is meant to swing",
         holds=(
             Clause("support_share_limp", ">", 0.5, "to carry the body is to carry most of its weight"),
             Clause("com_rise_limp", ">", 0.0, "raised is higher than with the joint intact", _VISIBLE_RISE),
@@ -150,6 +152,7 @@ RULES = (
         claim="fault_tolerance",
         experiment="joint_faults",
         measure="gain_front_yaw_limp_one",
+        definition="loss of the own displacement by a limp front yaw joint, with limbs only less with spine and tail",
         holds=tuple(
             Clause(
                 f"gain_{joint}_limp_one", ">", 0.0, f"{joint.replace('_', ' ')}: less of its own is lost", _PRINTED_LOSS

@@ -12,6 +12,7 @@ RULES = (
         claim="oscillators_switch",
         experiment="pattern_generator",
         measure="standing_index_walk",
+        definition="standing index of the axis while the limbs walk; 1 is a standing wave, 0 a travelling one",
         holds=(
             Clause("standing_index_walk", ">=", 0.5, _HALF),
             Clause("standing_index_swim", "<", 0.5, _HALF),
@@ -26,6 +27,8 @@ RULES = (
         claim="oscillators_direction",
         experiment="pattern_generator",
         measure="turn_gained",
+        definition="difference of the turn in a cycle between unequal and equal drives of both sides",
+        unit="rad/cycle",
         holds=(Clause("turn_gained", ">=", radians(1.0), "with less a circle takes more than 360 cycles"),),
         why="Drives that differ by one between the sides turn the walk by {turn_gained:deg.2f} degrees a cycle more or "
         "less than equal ones.",

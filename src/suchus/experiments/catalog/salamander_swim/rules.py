@@ -30,6 +30,7 @@ RULES = (
         claim="salamander_swim_stride",
         experiment="salamander_swim",
         measure="stride",
+        definition="displacement in a cycle in body lengths, mean of the animal's frequencies",
         holds=(
             Clause("stride_off", ">=", -0.25, _QUARTER),
             Clause("stride_off", "<=", 0.25, _QUARTER),

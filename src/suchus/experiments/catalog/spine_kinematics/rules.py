@@ -14,6 +14,7 @@ def _count(claim: str) -> Rule:
         claim=claim,
         experiment="spine_kinematics",
         measure=claim,
+        definition="joints of the trunk, counted in the model",
         kind="construction",
         why=f"{_CONSTRUCTION_NOTE} Yaw and pitch joints take turns, beginning with yaw.",
         unswept=_CONSTRUCTION_NOTE,
@@ -25,6 +26,7 @@ RULES = (
         claim="spine_forward",
         experiment="spine_kinematics",
         measure="printed_error_share",
+        definition="greatest error of the spine's end by (15), over the spine's length",
         kind="construction",
         holds=(
             Clause("printed_error_share", "<=", EXACT, "what follows from Table II equals its end to the last digits"),

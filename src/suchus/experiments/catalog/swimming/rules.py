@@ -73,6 +73,7 @@ RULES = (
         claim="swim_tail_sine",
         experiment="swimming",
         measure="tail_sine_share",
+        definition="part of the variance of the tail's tip to the side that the sine of one cycle explains",
         kind="animals",
         holds=(
             Clause("tail_sine_share", ">=", 0.95, "of the variance: a square wave, which is no sine, has 0.81 of it"),
@@ -87,6 +88,7 @@ RULES = (
         claim="swim_body_wave",
         experiment="swimming",
         measure="wave_share",
+        definition="part of the midline's mean square swing that the nearest wave of (20) explains",
         kind="construction",
         holds=(
             Clause("wave_share", ">=", 0.95, "of the mean square swing, as much as a sine needs to be called one"),
@@ -102,6 +104,8 @@ RULES = (
         claim="swim_pressure_convex",
         experiment="swimming",
         measure="pressure_convex_share",
+        definition="mean pressure on the tail's convex side less that on its concave side at T/4, over the mean "
+        "size of the difference",
         holds=(Clause("pressure_convex_share", ">", 0.0, "in both halves, started to either side", _VISIBLE_SHARE),),
         rungs=_AT_AN_INSTANT,
         form="+.0%",
@@ -113,18 +117,22 @@ RULES = (
         claim="swim_diagonal_force",
         experiment="swimming",
         measure="force_angle_1_quarter",
+        definition="angle between the force at T/4 and straight ahead",
+        unit="rad",
         holds=(
             Clause("force_angle_1_quarter", ">=", atan(_DIAGONAL), "less aside than a tenth of forward is ahead"),
             Clause("force_angle_1_quarter", "<=", atan(1 / _DIAGONAL), "less ahead than a tenth of aside is aside"),
         ),
         rungs=_AT_AN_INSTANT,
         form="deg.0f",
-        why="Degrees between the force at T/4 and straight ahead.",
+        why="The angle between the force at T/4 and straight ahead.",
     ),
     Rule(
         claim="swim_pressure_falls",
         experiment="swimming",
         measure="pressure_fall_share",
+        definition="difference of pressure across the tail at T/4 less that at 3T/4, over the mean size of the "
+        "difference",
         kind="construction",
         holds=(
             Clause("pressure_fall_share", ">=", _DIAGONAL, "of the difference itself: less is no fall in a picture"),
@@ -140,6 +148,7 @@ RULES = (
         claim="swim_thrust_symmetric",
         experiment="swimming",
         measure="thrust_3_quarter_share",
+        definition="force forward at 3T/4, over the mean size of the force at the quarters of the cycle",
         holds=(
             Clause("thrust_asymmetry", "<", 0.15, "of the force: less than a seventh looks alike in a picture"),
             Clause("thrust_3_quarter_share", ">", 0.0, "a forward thrust is forward", _VISIBLE_SHARE),
@@ -153,6 +162,7 @@ RULES = (
         claim="swim_s_shape",
         experiment="swimming",
         measure="track_sway",
+        definition="sway of the centre of mass to either side, over the body's length",
         holds=(
             Clause(
                 "track_sway", ">=", MIN_VISIBLE_SWAY, "of the body's length: less is as straight as a line in a picture"
@@ -167,6 +177,7 @@ RULES = (
         claim="swim_tail_thrust",
         experiment="swimming",
         measure="gain_tail_share",
+        definition="part of the free speed that is missing without the swing of the tail",
         holds=(Clause("gain_tail_share", ">", 0.5, "the main part is more than half"),),
         control=ControlGroup(
             group="trunk only", why="What the tail gives is what the same swim lacks without its swing."
@@ -181,6 +192,7 @@ RULES = (
         claim="swim_spine_thrust",
         experiment="swimming",
         measure="gain_spine_share",
+        definition="part of the free speed that is missing without the swing of the spine",
         holds=(Clause("gain_spine_share", ">", 0.0, "more than nothing, in both halves", _LEAST_GAIN),),
         control=ControlGroup(
             group="tail only", why="What the spine gives is what the same swim lacks without its swing."

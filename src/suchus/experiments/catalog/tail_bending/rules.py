@@ -25,6 +25,7 @@ RULES = (
         claim="tail_quadratic_small",
         experiment="tail_bending",
         measure="error_of_eq_17_max",
+        definition="greatest relative error of the cord lengths by (17) up to half a turn",
         holds=(Clause("error_of_eq_17_max", "<", SMALL, "one part in twenty of what is kept counts as small"),),
         why="Up to a half turn (17) is off by at most {error_of_eq_17_max:.1%}; with the widest gap and the narrowest "
         "spacing of the cords that we hold plausible, by {error_of_eq_17_plausible:.1%}.",
@@ -33,6 +34,7 @@ RULES = (
         claim="tail_cords_inextensible",
         experiment="tail_bending",
         measure="cords_opposed_share",
+        definition="share of the bends at which one cord is shorter and the other longer",
         kind="construction",
         holds=(Clause("cords_opposed_share", ">=", 1.0, "one cord is shorter and the other longer at every bend"),),
         why="At {cords_opposed_share:.0%} of the bends one cord is shorter and the other longer. They do not change by "
@@ -44,6 +46,7 @@ RULES = (
         claim="tail_joint_positions",
         experiment="tail_bending",
         measure="printed_last_joint_error_share",
+        definition="greatest error of the last joint's place by (19), over the section's length",
         kind="construction",
         holds=(Clause("printed_last_joint_error_share", "<=", EXACT, "positions of a chain are exact up to rounding"),),
         why="The last joint by (19) is {printed_last_joint_error_straight:mm.0f} mm off in a straight tail and up to "
@@ -55,6 +58,8 @@ RULES = (
         claim="tail_equal_bends",
         experiment="tail_bending",
         measure="tail_joint_spread",
+        definition="greatest difference between the angles of the tail's joints in the crawl",
+        unit="rad",
         holds=(
             Clause(
                 "tail_joint_spread",
@@ -73,6 +78,7 @@ RULES = (
         claim="tail_joints",
         experiment="tail_bending",
         measure="tail_joints",
+        definition="joints of the cable section",
         kind="construction",
         why=f"{_CONSTRUCTION_NOTE} Its hinges share one input.",
         unswept=_CONSTRUCTION_NOTE,
@@ -81,6 +87,7 @@ RULES = (
         claim="tail_actuators",
         experiment="tail_bending",
         measure="tail_actuators",
+        definition="servos of the tail",
         kind="construction",
         why=f"{_CONSTRUCTION_NOTE} A pitch servo and a servo for the cable.",
         unswept=_CONSTRUCTION_NOTE,
@@ -89,6 +96,8 @@ RULES = (
         claim="tail_end_flexible",
         experiment="tail_bending",
         measure="end_bend",
+        definition="range of the bend of the tail's end in the crawl",
+        unit="rad",
         kind="construction",
         holds=(Clause("end_bend", ">=", MIN_VISIBLE_ANGLE, "flexible is what bends by as much as a picture shows"),),
         why="Behind the last cable joint there are springs and dampers and no servo; in the crawl they let that end "
@@ -99,6 +108,7 @@ RULES = (
         claim="tail_share",
         experiment="tail_bending",
         measure="tail_share",
+        definition="length of the tail over that of the body",
         kind="construction",
         why="The article gives no length of the robot's tail; ours was chosen so that it makes this share.",
         unswept="The tail's length was chosen so.",

@@ -21,6 +21,7 @@ RULES = (
         claim="crawl_structure_flat",
         experiment="terrain",
         measure="flat_cost_ratio",
+        definition="work of the low crawl over that of the high walk, for the same distance on even ground",
         holds=(Clause("flat_cost_ratio", "<", 1.0, "the structure to adopt is the one that costs less"),),
         control=ControlGroup(group="high_walk", why="Section II.B: one structure or the other, on the same ground."),
         spread=("flat_cost_ratio",),
@@ -32,6 +33,7 @@ RULES = (
         claim="erect_structure_rough",
         experiment="terrain",
         measure="erect_open_loop_ahead_share",
+        definition="share of the rough grounds on which the erect walk gets farther than the crawl",
         holds=(
             Clause("erect_open_loop_ahead_share", ">", 0.5, "on more rough grounds than not"),
             Clause("falls_rough_high_walk", "<=", "falls_rough_low_crawl", "what falls does not move better"),
@@ -57,6 +59,7 @@ RULES = (
         claim="switches_structure",
         experiment="terrain",
         measure="transitions_upright",
+        definition="share of the transitions between walks that end upright",
         holds=(
             Clause("transitions_upright", ">=", 1.0, "a robot that falls has not switched"),
             Clause("transition_after_least", ">", 0.0, "after the switch it walks on", _LEAST_WALK),

@@ -8,6 +8,7 @@ RULES = (
         claim="working_space",
         experiment="working_space",
         measure="volume_ratio",
+        definition="volume in reach of the snout when the robot stands, over that on four feet",
         holds=(
             Clause("volume_ratio", ">=", 2.0, "less than twice as much is no great improvement"),
             Clause("area_ratio", ">", 1.0, "larger from the side too, as Fig. 23 shows it"),
