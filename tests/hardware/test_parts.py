@@ -120,7 +120,7 @@ def test_what_floats_is_told_from_what_sinks():
     afloat, sinks = sheet(ROBOTS["floating_caiman"]), sheet(ROBOTS["caiman"])
     whole = afloat.floating.bare + sum(volume for _, volume, _ in afloat.floating.foam)
     assert -afloat.floating.lacking == pytest.approx(0.05 * whole)  # as it is designed
-    assert floating_sentence(afloat).startswith(f"It floats with {50000 * whole:.0f} cm3")
+    assert floating_sentence(afloat).startswith(f"It floats with {50000 * whole:.0f} cm³")
     assert sinks.floating.lacking > 0.0
     assert floating_sentence(sinks).startswith("It sinks: ")
     raised = {body: up for body, _, up in afloat.floating.foam}
