@@ -149,7 +149,8 @@ def drag_across(swim: KnownSwim) -> Estimate:
     half_width, half_height = outline.silhouette
     solid = (half_width > 1e-6 * swim.robot.length) & (half_height > 1e-6 * swim.robot.length)
     width, height, reach = half_width[solid], half_height[solid], amplitude[solid]
-    steady = np.interp(width / height, *zip(*STEADY_DRAG, strict=True))
+    ratios, drags = (list(numbers) for numbers in zip(*STEADY_DRAG, strict=True))
+    steady = np.interp(width / height, ratios, drags)
     oscillating = [_oscillating_drag(swim, *section) for section in zip(width, height, reach, strict=True)]
     means = [float(np.average(drag, weights=height * reach**3)) for drag in (steady, oscillating)]
     low, high = (1.0 - _MARGIN) * min(means), (1.0 + _MARGIN) * max(means)
@@ -193,7 +194,9 @@ def share_of(rows: Sequence[Mapping[str, Any]], end: str, aspects: tuple[float, 
         end: shape of the end, one of ``evidence.shedding.ENDS``.
         aspects: least and greatest height over width [-].
     """
-    values, lows, highs = [], [], []
+    values: list[float] = []
+    lows: list[float] = []
+    highs: list[float] = []
     for keulegan in _SHED_KC:
         line = sorted(
             (row for row in rows if row["end"] == end and row["kc"] == keulegan), key=lambda row: row["aspect"]
