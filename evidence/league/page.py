@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from evidence.league.causes import cause_of
 from evidence.league.contestant import Contestant, Interval, Value
@@ -453,7 +454,9 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
                 ax.plot([value], [height], "o", color=palette[k], markersize=4.0, label=label)
         ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
         ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(max(len(rows), 1) - 0.5, -0.5))
+        ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.xaxis.set_minor_formatter(NullFormatter())
         if rows:
             ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
     captioned(
