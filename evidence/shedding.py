@@ -36,6 +36,8 @@ CUTS = (0.3, 0.7)
 """Where nose, middle and tail meet [body length]."""
 STRIDE, ANGLE = 2.0, radians(10.0)
 """Speed of the stream [body length a period], and the constant angle of incidence [rad]."""
+THIN_ASPECT, THIN_CELLS = 4.0, 69
+"""Height over width of one more pointed end at a constant angle, and cells per body length that carry it [-]."""
 CELLS, FINE_CELLS, LAYER_CELLS = 40, 56, 0.85
 """Cells per body length, those of the check, and cells in a boundary layer of the greatest velocity [-]."""
 
@@ -142,9 +144,10 @@ def table() -> dict[str, Any]:
     """
     cases = [Heave(end=end, aspect=aspect, keulegan_carpenter=kc) for end in ENDS for aspect in ASPECTS
              for kc in KEULEGAN_CARPENTER]  # fmt: skip
+    thin = Heave(end="pointed", aspect=THIN_ASPECT, keulegan_carpenter=inf, cells=THIN_CELLS)
     rows: list[dict[str, Any]] = []
     errors = [0.0]
-    for case in cases:
+    for case in [*cases, thin]:
         nose, tail = case.ends()
         errors.append(float(abs(tail[1] - tail[0])))
         rows.append(

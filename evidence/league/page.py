@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from textwrap import fill
@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from evidence.league.causes import cause_of
 from evidence.league.contestant import Contestant, Interval, Value
 from evidence.league.judging import NARROW, WIDEST, Judgement, Word, judged
 from evidence.league.sealing import SEAL, Measured, Prediction, Seal, bound_value, opened, read_prediction, read_seal
+from evidence.league.spans import Spans, read_spans
 from evidence.league.spread import COVERED
 from suchus.core.errors import IncompatibleRecord, UnreadableFile
 from suchus.core.files import path_exists, read_json, write
@@ -25,6 +27,8 @@ from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 PAGE, OUTCOMES, FIGURE = "league.md", "league.json", "league.png"
 """Files of the page."""
 _WIDTH = 118
+SHOWN_SPANS = 5
+"""Unknowns of a contestant in the table of what makes its interval wide [-]."""
 AIM = 0.7
 """Share of the recommended model's judged predictions that should be within a narrow interval [-]."""
 _BOLD: Mapping[Word, str] = {
@@ -57,6 +61,8 @@ class LeagueEntry:
     """By quantity; empty where nothing is public."""
     unsteadiness: str = ""
     """Why what was measured is no steady swim, in a phrase; empty where it can be one."""
+    spans: Spans = field(default_factory=dict)
+    """How far each unknown alone moves the recommended model's answer, see ``league.spans``; empty if not computed."""
 
     def judgements(self) -> list[tuple[str, str, Interval, Measured, Judgement]]:
         """Return quantity, rung, prediction, measurement and verdict of all that was measured."""
@@ -98,12 +104,13 @@ def standing(contestant: Contestant, out: Path, measured: Path) -> LeagueEntry:
         seal=read_seal(folder),
         measured=truth,
         unsteadiness=find({name: _first(one.value) for name, one in truth.items()}) if find and truth else "",
+        spans=read_spans(folder),
     )
 
 
 _STORED_KEYS = {"explanation": "about"}
 """Keys of the stored standings that differ from the fields' names."""
-_LATER_FIELDS = ("unsteadiness",)
+_LATER_FIELDS = ("unsteadiness", "spans")
 """Fields that older stored standings lack."""
 
 
@@ -150,6 +157,8 @@ def standing_of(data: Any) -> LeagueEntry:
     }
     keys = {name: _STORED_KEYS.get(name, name) for name in LeagueEntry.__dataclass_fields__}
     fields = {name: data[key] for name, key in keys.items() if name not in _LATER_FIELDS or key in data}
+    if "spans" in fields:
+        fields["spans"] = {name: tuple(ends) for name, ends in fields["spans"].items()}
     return LeagueEntry(**(fields | {"prediction": prediction, "measured": measured, "seal": Seal(**data["seal"])}))
 
 
@@ -226,7 +235,7 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         "date, the state of the code and a digest. Only then the measurement is read, where there is one; nothing is "
         "fitted to a contestant's own result, and a sealed prediction is never replaced.",
         "",
-        _TRIALS,
+        *_TRIALS,
         "",
         "## Hits",
         "",
@@ -235,6 +244,7 @@ def page(standings: Sequence[LeagueEntry], picture: str) -> str:
         "## Misses and their causes",
         "",
         *_misses(every),
+        *_widths(standings),
     ]
     for one in standings:
         seal = one.seal
@@ -265,13 +275,22 @@ def filled(line: str) -> str:
 
 
 _TRIALS = (
-    "Some measurements were open before the predictions that stand here were sealed. Catsharks, salamander, Tunabot, "
-    "the law and the alligator's slopes were judged in a first round. Then the catshark's wavelength was taken as "
-    "printed, animals were made to swing their tails as filmed, and a controller of the cadence was put on the slopes. "
-    "The lampreys and the prickleback were measured by a program that showed frequency, wave and envelope alone; their "
-    "speeds were opened after the seal. The prickleback's sections were asked again after it, since its smallest and "
-    "largest bodies could not swim in one batch. The eel's speed was known. What was measured of AmphiBot, and of the "
-    "catshark at other speeds, is not in this repository and was not seen."
+    "Some measurements were open before the predictions that stand here were sealed. In a first round catsharks, "
+    "salamander, Tunabot, the law and the alligator's slopes were judged; then the catshark's wavelength was taken as "
+    "printed, animals were made to swing their tails as filmed, and a controller of the cadence was put on the "
+    "slopes. The lampreys and the prickleback were measured by a program that showed frequency, wave and envelope "
+    "alone, and their speeds were opened after a seal. The eel's speed was known. The round that stands here has new "
+    "water: what tapers sheds, drag across by the body's proportions, friction by measured layers, and [the form of a "
+    "body](water_evidence.md#the-form-of-a-body). All that was argued and kept in the history of the code before a "
+    "prediction with it was computed; by then all public measurements were open, and it was known that sections had "
+    "been too slow for long fish and too fast for the salamander. In the round before, 6 of the 11 predictions by "
+    "sections met the measurement, 2 of them narrowly. Catsharks, alligators, the law and Salamandra have the "
+    "predictions of earlier rounds, by the state of the code that stands beside them. What was measured of AmphiBot, "
+    "and of the catshark at other speeds, is not in this repository and was not seen.",
+    "",
+    "The sections of this round are those of `suchus` with `Lake(form=design.BodyForm(...))`. Swims of `suchus` have "
+    "no form unless it is asked for, drag 1.1 across and 3 times a plate's friction along: all their kept numbers "
+    "were computed so. `suchus run swim_free` varies these coefficients, and its range is the answer.",
 )
 _OWN = (
     "## A measurement and a contestant of your own",
@@ -371,6 +390,28 @@ def _misses(every: Sequence[Row]) -> list[str]:
     return lines + [f"{_prediction_row(row)} {cause_of(row[0].name, row[2])} |" for row in missed]
 
 
+def _widths(standings: Sequence[LeagueEntry]) -> list[str]:
+    """Return the unknowns that move the recommended model most, of each contestant; nothing where none is known."""
+    rows = [one for one in standings if one.spans]
+    if not rows:
+        return []
+    lines = [
+        "",
+        "## What makes the intervals wide",
+        "",
+        f"The {SHOWN_SPANS} numbers that move the answer of {RECOMMENDED} most: the answer with the number at its "
+        "least and at its greatest value, all others as likely, over that with all as likely.",
+        "",
+        "| contestant | quantity | " + " | ".join(["number, answers"] * SHOWN_SPANS) + " |",
+        "|---|---|" + "---|" * SHOWN_SPANS,
+    ]
+    for one in rows:
+        cells = [f"{name}, {low:.2f} to {high:.2f}" for name, (low, high) in list(one.spans.items())[:SHOWN_SPANS]]
+        cells += [""] * (SHOWN_SPANS - len(cells))
+        lines.append(f"| {one.name} | {next(iter(one.words.values()))} | {' | '.join(cells)} |")
+    return lines
+
+
 def _prediction_row(row: Row) -> str:
     """Return the cells that hits and misses share, in Markdown."""
     one, quantity, rung, at, truth, word = row
@@ -413,7 +454,9 @@ def draw(standings: Sequence[LeagueEntry], path: Path) -> Path:
                 ax.plot([value], [height], "o", color=palette[k], markersize=4.0, label=label)
         ax.set_yticks(range(len(rows)), [f"{one.name}: {quantity}".replace("_", " ") for one, quantity in rows])
         ax.set(xscale="log", xlabel="prediction over what was measured [-]", ylim=(max(len(rows), 1) - 0.5, -0.5))
+        ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.xaxis.set_minor_formatter(NullFormatter())
         if rows:
             ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
     captioned(

@@ -15,14 +15,18 @@ from evidence.league.contestant import Found, Numbers, Predictor
 from suchus.core import rotation
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
 from suchus.core.progress import Progress, portion
+from suchus.core.water_table import column
 from suchus.flow.setup import MIN_LAYER_CELLS
 from suchus.robot.control import Swimming
-from suchus.robot.design import WATER_DENSITY, Robot, layout
+from suchus.robot.design import WATER_DENSITY, BodyForm, Robot, layout
+from suchus.robot.design.form import formed, shed_momenta
+from suchus.robot.design.pieces import pieces
 from suchus.robot.design.scale import control_period
 from suchus.robot.design.water import Water
 from suchus.robot.motion import Curve, Gait, cycle_targets, servo_parts
 from suchus.sim.land import Lake, Run, simulate
 from suchus.swimming.water import Motion, Outline, cruise, cycle, reactive, recoil, resistive, undulation
+from suchus.swimming.water.form_drag import resist_form
 from suchus.swimming.water.resolved import SwimSetting, resolved_swim
 from suchus.swimming.water.slender import Effort, Model
 from suchus.swimming.water.undulation import straight_motion
@@ -68,8 +72,8 @@ class ModelSwimmer:
     """Its swim."""
     water: Water = field(default_factory=Water)
     """The medium, and what sections feel in it."""
-    shedding: float = 1.0
-    """Share of the momentum of the water at the tail's end that is shed there, as Lighthill has it [-]."""
+    form: BodyForm = field(default_factory=BodyForm)
+    """Drag of head, blunt end and folded limbs, and what the tail sheds."""
     added_mass: float = 1.0
     """Added mass over that of ideal water [-]."""
     ramp: float = 0.5
@@ -271,8 +275,10 @@ def theory(model: Model, swimmer: ModelSwimmer, *, coasts: bool = False, starts:
     Raises:
         NotConverged: thrust and drag never balance.
     """
-    outline = Outline(swimmer.robot, STATIONS)
-    bent, shed = undulation(outline, swimmer.gait), partial(_shed, model, swimmer.shedding)
+    outline, table = Outline(swimmer.robot, STATIONS), formed(pieces(swimmer.robot), swimmer.form)
+    shed_section = float(shed_momenta(pieces(swimmer.robot), swimmer.form).sum())
+    shed = resist_form(partial(_shed, model, shed_section), float(column(table, "end").sum()))
+    bent = undulation(outline, swimmer.gait)
     free = cruise(outline, bent, shed, swimmer.water)
     curve = cycle(outline, bent, free.sway, free.turn)
     return SwimPrediction(
@@ -285,11 +291,21 @@ def theory(model: Model, swimmer: ModelSwimmer, *, coasts: bool = False, starts:
     )
 
 
-def _shed(model: Model, share: float, outline: Outline, curve, speed: float, water: Water) -> Effort:  # type: ignore[no-untyped-def]
-    """Return the effort of a model, of whose shed momentum a share is; resistive theory sheds none."""
+def _shed(model: Model, section: float, outline: Outline, curve, speed: float, water: Water) -> Effort:  # type: ignore[no-untyped-def]
+    """Return the effort of a model that sheds the momentum of a section; resistive theory sheds none.
+
+    Args:
+        model: resistive or reactive; the latter sheds the momentum of the trailing edge.
+        section: lateral momentum that is shed, over density, speed and lateral velocity [m2].
+        outline: outline of the robot.
+        curve: its midline over one cycle.
+        speed: forward [m/s].
+        water: its water.
+    """
     whole = model(outline, curve, speed, water)
-    if model is not reactive or share == 1.0:
+    if model is not reactive:
         return whole
+    share = section / (pi * float(outline.silhouette.half_height[-1]) ** 2)
     surface = -model(
         outline, cycle(outline, straight_motion(outline)), speed, water
     ).thrust  # of the straight body: friction
@@ -491,8 +507,7 @@ def sections(
 
 def _lake(one: ModelSwimmer, current: tuple[float, float] = (0.0, 0.0)) -> Lake:
     return Lake(
-        level=_DEEP * one.robot.length, water=one.water, added_mass=one.added_mass, shedding=one.shedding,
-        current=current,
+        level=_DEEP * one.robot.length, water=one.water, added_mass=one.added_mass, form=one.form, current=current,
     )  # fmt: skip
 
 

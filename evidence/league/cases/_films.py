@@ -1,5 +1,6 @@
 """Long swimmers that were filmed from above: their wave with its whole envelope, and their bodies from drawings."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -7,7 +8,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from evidence.league import Given, Numbers
-from evidence.league.cases._water import fresh
+from evidence.league.cases._water import DENSITY, KnownSwim, form_of, fresh
 from evidence.league.swims import ModelSwimmer, waters
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import Robot
@@ -112,50 +113,62 @@ def _gait(robot: Robot, wave: FilmedEnvelope) -> Gait:
     return fit(robot, wave, name=f"{robot.name}_film", max_misfit=0.4).gait
 
 
-def filmed_swimmer(
-    body: LongBody, positions: tuple[float, ...], shape: tuple[float, ...], numbers: Numbers
-) -> ModelSwimmer:
-    """Return a long animal that makes the wave of its film.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilmedSwim:
+    """A long animal and the shape of its filmed wave."""
 
-    Args:
-        body: its drawing.
-        positions: where its envelope was filmed [body length].
-        shape: amplitude there over that of the tail's tip [-].
-        numbers: ``length`` [m], ``frequency`` [Hz], ``wavelength`` and ``tail`` (from side to side) [body length],
-            ``wide`` and ``high`` [-], and those of ``cases._water.fresh``.
-    """
-    robot = _robot(
-        body, numbers["length"], numbers["wide"], numbers["high"], 0.9995 * numbers["density"],
-        1.5 * numbers["frequency"],
-    )  # fmt: skip
-    wave = FilmedEnvelope(
-        length=numbers["length"], frequency=1.0, wavelength=numbers["wavelength"], positions=positions,
-        amplitudes=tuple(0.5 * numbers["tail"] * value for value in shape),
-    )  # fmt: skip
-    return ModelSwimmer(
-        robot=robot, gait=replace(_gait(robot, wave), period=1.0 / numbers["frequency"]), water=waters(numbers),
-        shedding=numbers["shedding"], added_mass=numbers["added_mass"], ramp=1.0,
-    )  # fmt: skip
+    body: LongBody
+    """Drawing."""
+    positions: tuple[float, ...]
+    """Where its envelope was filmed [body length]."""
+    shape: tuple[float, ...]
+    """Amplitude there over that of the tail's tip [-]."""
+
+    def motion(self, numbers: Numbers) -> tuple[Robot, Gait]:
+        """Return body and gait.
+
+        Args:
+            numbers: ``length`` [m], ``frequency`` [Hz], ``wavelength`` and ``tail`` (from side to side) [body length],
+                ``wide`` and ``high`` [-], ``density`` [kg/m3].
+        """
+        robot = _robot(
+            self.body, numbers["length"], numbers["wide"], numbers["high"], 0.9995 * numbers["density"],
+            1.5 * numbers["frequency"],
+        )  # fmt: skip
+        wave = FilmedEnvelope(
+            length=numbers["length"], frequency=1.0, wavelength=numbers["wavelength"], positions=self.positions,
+            amplitudes=tuple(0.5 * numbers["tail"] * value for value in self.shape),
+        )  # fmt: skip
+        return robot, replace(_gait(robot, wave), period=1.0 / numbers["frequency"])
+
+    def swimmer(self, numbers: Numbers) -> ModelSwimmer:
+        """Return the animal in its water.
+
+        Args:
+            numbers: those of ``motion`` and of ``cases._water.fresh``.
+        """
+        robot, gait = self.motion(numbers)
+        return ModelSwimmer(
+            robot=robot, gait=gait, water=waters(numbers), form=form_of(numbers), added_mass=numbers["added_mass"],
+            ramp=1.0,
+        )  # fmt: skip
+
+    def water(self, given: Mapping[str, Given], viscosity: float = 1e-6) -> dict[str, Given]:
+        """Return the numbers of its water.
+
+        Args:
+            given: numbers of body and wave.
+            viscosity: kinematic [m2/s].
+        """
+        numbers = {name: number.value for name, number in given.items()} | {"density": DENSITY}
+        robot, gait = self.motion(numbers)
+        return fresh(
+            KnownSwim(
+                robot=robot, gait=gait, wavelength=numbers["wavelength"], swing=numbers["tail"], viscosity=viscosity
+            )
+        )
 
 
 def filmed_swing(numbers: Numbers) -> float:
     """Return the filmed way of the tail's tip from side to side [m]."""
     return numbers["tail"] * numbers["length"]
-
-
-def water_of_long_swimmers(end: str) -> dict[str, Given]:
-    """Return the water of a swimmer without limbs whose sections are ellipses.
-
-    Args:
-        end: what is known of the end of its tail, as a clause.
-    """
-    return fresh(
-        drag=(1.1, 0.8, 1.8),
-        rub=(1.5, 1.0, 3.0),
-        shed=(0.7, 0.3, 1.0),
-        why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
-        "(docs/amphibious.md)",
-        why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
-        "204, 81 [memory]); up to 3 for what fins and nose add",
-        why_shed=f"Lighthill's momentum leaves at a thin trailing edge; {end}",
-    )

@@ -1,13 +1,15 @@
 """AmphiBot, a swimming robot of seven segments, from the log of its motors: from rest, steady, and coasting."""
 
 import csv
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib import resources
-from math import radians
+from math import pi, radians
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
-from evidence.league.cases._water import fresh
+from evidence.league.cases._water import BLOCK_HEAD, DENSITY, KnownSwim, form_of, fresh
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
+from suchus.robot.design import Robot
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.scale import swim_servo_for
 from suchus.robot.motion import Gait
@@ -56,19 +58,7 @@ def _given() -> dict[str, Given]:
         half = 0.5 * radians(row["measured_max_deg"] - row["measured_min_deg"])
         step = radians(0.67) / 2.0
         found[f"amplitude_{i}"] = Given(value=half, low=half - step, high=half + step, unit="rad", source=_REPOSITORY)
-    return found | fresh(
-        drag=(1.3, 0.9, 2.0),
-        rub=(3.5, 2.0, 8.0),
-        shed=(0.5, 0.0, 1.0),
-        why_drag="sections between an ellipse (1.0) and a block with rounded edges (2.0), Hoerner 1965, "
-        "Fluid-Dynamic Drag",
-        why_rub="a bending body rubs 2 to 5 times as a plate (docs/water.md); gaps between blocks and a blunt "
-        "head come "
-        "on top: 0.3 to 0.8 of the front's area, Hoerner 1965",
-        why_shed="Lighthill's momentum leaves at a thin edge and small angles; a block that swings by 30 "
-        "degrees a joint "
-        "sheds along its whole length, so that none to all of it may count",
-    )
+    return found
 
 
 @lru_cache(maxsize=128)
@@ -87,14 +77,17 @@ def _body(pitch: float, height: float, width: float, density: float) -> Drawing:
     )
 
 
+def _robot(numbers: Numbers) -> Robot:
+    drawing = _body(numbers["pitch"], numbers["height"], numbers["width"], numbers["afloat"] * numbers["density"])
+    return drawing.robot(swim_servo_for(drawing.mass, drawing.length, 1.0 / _PERIOD))
+
+
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the robot with its log's gait."""
     del frequency
-    water = waters(numbers)
-    drawing = _body(numbers["pitch"], numbers["height"], numbers["width"], numbers["afloat"] * numbers["density"])
-    robot = drawing.robot(swim_servo_for(drawing.mass, drawing.length, 1.0 / _PERIOD))
+    robot = _robot(numbers)
     return ModelSwimmer(
-        robot=robot, gait=_gait(robot, numbers), water=water, shedding=numbers["shedding"],
+        robot=robot, gait=_gait(robot, numbers), water=waters(numbers), form=form_of(numbers),
         added_mass=numbers["added_mass"], ramp=numbers["ramp"],
     )  # fmt: skip
 
@@ -118,6 +111,18 @@ def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found
     return found | ({"coast_down": swum.coast} if swum.coast == swum.coast else {})
 
 
+def _water(given: Mapping[str, Given]) -> dict[str, Given]:
+    """Return the numbers of its water: a head and blocks with rounded edges, a lag that makes a wave of its own length.
+
+    Args:
+        given: numbers of body and gait.
+    """
+    numbers = {name: number.value for name, number in given.items()} | {"density": DENSITY}
+    robot = _robot(numbers)
+    wavelength = 2.0 * pi / numbers["lag"] / _SEGMENTS
+    return fresh(KnownSwim(robot=robot, gait=_gait(robot, numbers), wavelength=wavelength, head=BLOCK_HEAD))
+
+
 contestant = SingleContestant(
     Contestant(
         name="amphibot",
@@ -127,7 +132,7 @@ contestant = SingleContestant(
         "The angles of its joints are those that its motors reported: period 0.688 s, 29.3 degrees of lag from "
         "joint to "
         "joint, amplitudes of 27 to 30 degrees.",
-        inputs=_given() | {"joints": known(float(_JOINTS), "-", _REPOSITORY)},
+        inputs=_given() | _water(_given()) | {"joints": known(float(_JOINTS), "-", _REPOSITORY)},
         predicts={
             "steady_speed": Quantity(unit="m/s", words="steady speed along its path"),
             "first_periods": Quantity(unit="m/s", words="mean speed in each of the first four periods from rest"),

@@ -10,7 +10,7 @@ import numpy as np
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Predictor, Quantity, known
 from evidence.league.cases._films import filmed_swing
-from evidence.league.cases._water import fresh
+from evidence.league.cases._water import DENSITY, KnownSwim, form_of, fresh
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.core.progress import Progress
@@ -50,23 +50,35 @@ def _read(film: dict[str, np.ndarray], name: str, speed: float, factor: float, s
 _body = lru_cache(maxsize=256)(partial(catshark, beat=_BEAT))
 
 
-def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
-    """Return the animal with its filmed midline at a frequency [Hz]."""
-    length, often = numbers["length"], frequency or 2.0
+def _motion(numbers: Numbers, often: float) -> tuple[Robot, Gait]:
+    """Return the animal and its filmed midline at a frequency [Hz]."""
+    length = numbers["length"]
     robot = _body(
         length, numbers["mass"] * length**3, 0.9995 * numbers["density"], numbers["wide"], numbers["tail_height"]
     )
     gait = _gait(robot, numbers["wavelength"], 0.5 * numbers["head"], 0.5 * numbers["tail"])
+    return robot, replace(gait, period=1.0 / often)
+
+
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
+    """Return the animal with its filmed midline at a frequency [Hz]."""
+    robot, gait = _motion(numbers, frequency or 2.0)
     return ModelSwimmer(
-        robot=robot, gait=replace(gait, period=1.0 / often), water=waters(numbers), shedding=numbers["shedding"],
-        added_mass=numbers["added_mass"], ramp=1.0,
-    )  # fmt: skip
+        robot=robot, gait=gait, water=waters(numbers), form=form_of(numbers), added_mass=numbers["added_mass"], ramp=1.0
+    )
 
 
 @lru_cache(maxsize=256)
 def _gait(robot: Robot, wavelength: float, head: float, tail: float) -> Gait:
     wave = FilmedWave(length=robot.length, frequency=1.0, wavelength=wavelength, head=head, tail=tail)
     return fit(robot, wave, name="catshark_film", max_misfit=0.4).gait
+
+
+def _water(given: Mapping[str, Given]) -> dict[str, Given]:
+    """Return the numbers of its water, from those of body and gait, at the tail beat with which a search begins."""
+    numbers = {name: number.value for name, number in given.items()} | {"density": DENSITY}
+    robot, gait = _motion(numbers, _start(numbers["speed"]))
+    return fresh(KnownSwim(robot=robot, gait=gait, wavelength=numbers["wavelength"], swing=numbers["tail"]))
 
 
 def held(numbers: Numbers) -> float:
@@ -119,19 +131,7 @@ def at(speed: float) -> Contestant:
         value=0.3, low=0.2, high=0.4, unit="-",
         source="of cruising fish, cetaceans, birds and bats (Taylor, Nudds and Thomas 2003, Nature 425, 707)",
     )  # fmt: skip
-    given |= fresh(
-        drag=(1.1, 0.8, 1.8),
-        rub=(1.5, 1.0, 3.0),
-        shed=(0.8, 0.4, 1.2),
-        why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag; fins and oscillation raise it "
-        "(docs/amphibious.md)",
-        why_rub="1 is a plate; on swimming scup and dogfish 1.1 to 1.9 times a plate's friction was seen (Anderson, "
-        "McGillis and Grosenbaugh 2001, J. Exp. Biol. 204, 81 [memory]); up to 3 for what fins and nose add. A trial "
-        "that was not sealed took 1 to 5, the range of docs/water.md for any body",
-        why_shed="at a thin fin nearly all of Lighthill's momentum is shed; what dorsal and anal fins shed "
-        "ahead may add "
-        "to it or be recovered by the tail (Wu 1971, J. Fluid Mech. 46, 545)",
-    )
+    given |= _water(given)
     return Contestant(
         name=f"catshark_{speed:g}",
         title=f"A catshark holds {speed:g} body lengths a second",

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Quantity
-from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing, water_of_long_swimmers
+from evidence.league.cases._films import FilmedSwim, LongBody, filmed_swing
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 from suchus.core.errors import InvalidDesign
@@ -32,6 +32,8 @@ BODY = LongBody(
     half_height=(0.012, 0.022, 0.026, 0.028, 0.028, 0.028, 0.028, 0.027, 0.025, 0.018, 0.012),
 )
 """Outline of the lamprey."""
+SWIM = FilmedSwim(body=BODY, positions=POSITIONS, shape=SHAPE)
+"""Lamprey and the shape of its filmed wave."""
 VISCOSITIES = {1.0: (2.88, 0.764, 0.143), 10.0: (2.82, 0.723, 0.148), 20.0: (2.18, 0.684, 0.150)}
 """Frequency [Hz], wavelength [body length] and length [m] that were filmed, by viscosity over that of water."""
 _ERRORS = {1.0: (0.30, 0.021, 0.0033), 10.0: (0.51, 0.040, 0.0074), 20.0: (0.31, 0.053, 0.0064)}
@@ -40,7 +42,7 @@ _ERRORS = {1.0: (0.30, 0.021, 0.0033), 10.0: (0.51, 0.040, 0.0074), 20.0: (0.31,
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the lamprey with its filmed wave."""
     del frequency
-    return filmed_swimmer(BODY, POSITIONS, SHAPE, numbers)
+    return SWIM.swimmer(numbers)
 
 
 def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
@@ -82,7 +84,7 @@ def in_viscosity(viscosity: float) -> Contestant:
     )  # fmt: skip
     given["wide"] = Given(value=0.8, low=0.6, high=1.0, unit="-", source=f"factor on the drawn width: {_DRAWING}")
     given["high"] = Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the drawn height: {_DRAWING}")
-    water = water_of_long_swimmers("the fin is round at its end and low")
+    water = SWIM.water(given, 1e-6 * viscosity)
     thick = {
         "viscosity": Given(
             value=1e-6 * viscosity, low=0.9e-6 * viscosity, high=1.15e-6 * viscosity, unit="m2/s",

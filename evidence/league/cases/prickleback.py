@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
-from evidence.league.cases._films import LongBody, filmed_swimmer, filmed_swing, water_of_long_swimmers
+from evidence.league.cases._films import FilmedSwim, LongBody, filmed_swing
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 
@@ -25,12 +25,13 @@ _BODY = LongBody(
     half_width=(0.010, 0.020, 0.024, 0.019, 0.020, 0.019, 0.016, 0.013, 0.011, 0.006, 0.004),
     half_height=(0.014, 0.030, 0.040, 0.046, 0.048, 0.047, 0.042, 0.037, 0.030, 0.026, 0.020),
 )
+_SWIM = FilmedSwim(body=_BODY, positions=_POSITIONS, shape=_SHAPE)
 
 
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
     """Return the fish with its filmed wave."""
     del frequency
-    return filmed_swimmer(_BODY, _POSITIONS, _SHAPE, numbers)
+    return _SWIM.swimmer(numbers)
 
 
 def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found:
@@ -44,6 +45,27 @@ def _unsteadiness(measured: Mapping[str, float]) -> str:
     return unsteady_wave(measured["stride"] * FREQUENCY, FREQUENCY * WAVELENGTH) if "stride" in measured else ""
 
 
+_GIVEN = {
+    "length": Given(
+        value=0.22, low=0.12, high=0.40, unit="m",
+        source="key points in pixels without a scale; fish of this kind in laboratories have 0.12 to 0.4 m "
+        "[memory]",
+    ),
+    "frequency": Given(
+        value=FREQUENCY, low=0.40, high=0.90, unit="Hz",
+        source=f"{_FILM}: at 60 frames a second, as the vignette of the package has it; up to twice as many",
+    ),
+    "wavelength": Given(
+        value=WAVELENGTH, low=0.82, high=0.98, unit="body length",
+        source=f"phase of the lateral motion behind the first quarter: {_FILM}",
+    ),
+    "tail": Given(
+        value=0.28, low=0.24, high=0.32, unit="body length",
+        source=f"way of the tail from side to side: {_FILM}",
+    ),
+    "wide": Given(value=1.0, low=0.8, high=1.3, unit="-", source=f"factor on the drawn width: {_DRAWING}"),
+    "high": Given(value=1.0, low=0.75, high=1.2, unit="-", source=f"factor on the drawn height: {_DRAWING}"),
+}  # fmt: skip
 contestant = SingleContestant(
     Contestant(
         name="prickleback",
@@ -51,28 +73,7 @@ contestant = SingleContestant(
         description="A rock prickleback (Xiphister mucosus) swims freely and slowly, five beats in a slight curve. "
         "Wavelength and envelope are those of the film; its scale and its frequency are not known, and matter through "
         "friction only.",
-        inputs={
-            "length": Given(
-                value=0.22, low=0.12, high=0.40, unit="m",
-                source="key points in pixels without a scale; fish of this kind in laboratories have 0.12 to 0.4 m "
-                "[memory]",
-            ),
-            "frequency": Given(
-                value=FREQUENCY, low=0.40, high=0.90, unit="Hz",
-                source=f"{_FILM}: at 60 frames a second, as the vignette of the package has it; up to twice as many",
-            ),
-            "wavelength": Given(
-                value=WAVELENGTH, low=0.82, high=0.98, unit="body length",
-                source=f"phase of the lateral motion behind the first quarter: {_FILM}",
-            ),
-            "tail": Given(
-                value=0.28, low=0.24, high=0.32, unit="body length",
-                source=f"way of the tail from side to side: {_FILM}",
-            ),
-            "wide": Given(value=1.0, low=0.8, high=1.3, unit="-", source=f"factor on the drawn width: {_DRAWING}"),
-            "high": Given(value=1.0, low=0.75, high=1.2, unit="-", source=f"factor on the drawn height: {_DRAWING}"),
-        }
-        | water_of_long_swimmers("the fin is round at its end"),
+        inputs=_GIVEN | _SWIM.water(_GIVEN),
         predicts={"stride": Quantity(unit="body length", words="stride, the way in a beat")},
         rungs=rungs(SwimTask(build=build, read_quantities=read, cycles=10, filmed_swing=filmed_swing)),
         find_unsteadiness=_unsteadiness,

@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant
-from evidence.league.cases._water import fresh
+from evidence.league.cases._water import KnownSwim, form_of, fresh
 from evidence.league.swims import (
     ModelSwimmer,
     SwimPrediction,
@@ -20,6 +20,7 @@ from evidence.league.swims import (
 )
 from suchus.core.errors import NotConverged
 from suchus.core.progress import Progress, portion
+from suchus.robot.design import Robot
 from suchus.robot.gaits import ANIMAL_SWIM
 from suchus.robot.motion import Curve, Gait, servo_parts
 from suchus.robot.robots._animals import pleurodeles
@@ -34,23 +35,32 @@ _FILMED = (
 )
 SWING = 0.26
 """Way of the tail's tip from side to side that was filmed [body length]."""
+_MEAN_FREQUENCY = float(np.mean(FREQUENCIES))
+_WAVELENGTH = 0.9  # [body length, memory]; friction alone asks for it
+_TAIL_ASPECT = (1.0, 4.0)  # the model's tail is round, the animal's flat, with a fin as high as its trunk [memory]
 _FOLDED = float(np.radians(-85.0))
 
 
 _animal = lru_cache(maxsize=128)(partial(pleurodeles, beat=FREQUENCIES[-1]))
 
 
-def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
-    """Return the animal with its filmed joints at a frequency [Hz]; the mean of the filmed ones if None."""
+def _motion(numbers: Numbers, often: float) -> tuple[Robot, Gait]:
+    """Return the animal and its filmed joints at a frequency [Hz]."""
     robot = _animal(numbers["length"], numbers["mass"], numbers["own_density"], numbers["keel"])
-    parts, often = servo_parts(robot), frequency or float(np.mean(FREQUENCIES))
+    parts = servo_parts(robot)
     angles = dict(ANIMAL_SWIM) | {f"{side}_yaw": (_FOLDED,) for side in ("LF", "RF", "LH", "RH")}
     gait = Gait(
         name=f"animal_swim_{often:.3g}", period=1.0 / often, limb_phases=(0.0,) * 4,
         curves=tuple(Curve(servo=name, part=parts[name], angles=curve) for name, curve in angles.items()),
     )  # fmt: skip
+    return robot, gait
+
+
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
+    """Return the animal with its filmed joints at a frequency [Hz]; the mean of the filmed ones if None."""
+    robot, gait = _motion(numbers, frequency or _MEAN_FREQUENCY)
     return ModelSwimmer(
-        robot=robot, gait=gait, water=waters(numbers), shedding=numbers["shedding"], added_mass=numbers["added_mass"],
+        robot=robot, gait=gait, water=waters(numbers), form=form_of(numbers), added_mass=numbers["added_mass"],
         ramp=0.0,
     )  # fmt: skip
 
@@ -132,6 +142,8 @@ _GIVEN = {
         value=0.25, low=0.1, high=0.4, unit="-", source="lungs lie above the bones: by how much is not published"
     ),
 }  # fmt: skip
+_LIKELY = _motion({name: number.value for name, number in _GIVEN.items()}, _MEAN_FREQUENCY)
+_KNOWN = KnownSwim(robot=_LIKELY[0], gait=_LIKELY[1], wavelength=_WAVELENGTH, swing=SWING, tail_aspect=_TAIL_ASPECT)
 _TASK = SwimTask(build=build, read_quantities=read, filmed_swing=filmed_swing)
 _ASKED = {name: rung for name, rung in rungs(_TASK).items() if name != "reactive"}
 contestant = SingleContestant(
@@ -141,17 +153,7 @@ contestant = SingleContestant(
         description="Pleurodeles waltl at its own length, mass and volume, limbs folded back, in fresh water; the "
         "angles of its "
         "axial joints are the mean cycle that was filmed, scaled so that its tail swings as far as the animal's did.",
-        inputs=_GIVEN
-        | fresh(
-            drag=(1.1, 0.8, 1.8),
-            rub=(1.5, 1.0, 3.0),
-            shed=(0.7, 0.3, 1.2),
-            why_drag="ellipses across, Hoerner 1965; a tail with a fin and oscillation raise it (docs/amphibious.md)",
-            why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson, McGillis and Grosenbaugh 2001, J. Exp. Biol. "
-            "204, 81 [memory]); folded limbs add to it",
-            why_shed="the model's tail is round and ends in a point; the animal's is flat and has a fin as high as its "
-            "trunk, which sheds ahead of the tip",
-        ),
+        inputs=_GIVEN | fresh(_KNOWN),
         predicts={
             "stride": Quantity(unit="body length", words="stride, the mean over the frequencies"),
             "strides": Quantity(unit="body length", words="stride at 2.6, 2.9, 3.4 and 3.8 Hz"),

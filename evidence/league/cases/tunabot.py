@@ -1,15 +1,17 @@
 """Tunabot, a robot fish whose tail beats at up to 15 Hz: how fast that drives it."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from itertools import pairwise
 
 from evidence.league import Contestant, Found, Given, Numbers, Quantity, SingleContestant, known
 from evidence.league.cases._films import filmed_swing
-from evidence.league.cases._water import fresh
+from evidence.league.cases._water import DENSITY, KnownSwim, form_of, fresh
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs, waters
 from suchus.robot.design import Robot
 from suchus.robot.design.drawing import Drawing
 from suchus.robot.design.scale import swim_servo_for
+from suchus.robot.motion import Gait
 from suchus.swimming.water import FilmedWave, fit
 
 _ZHU = "Zhu et al. 2019, Sci. Robot. 4, eaax4615 (abstract)"
@@ -40,17 +42,23 @@ def _body(length: float, wide: float, fin: float, density: float) -> Robot:
     return drawing.robot(swim_servo_for(mass, length, 15.0))
 
 
-def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
-    """Return the robot with a tail that beats at a frequency [Hz], at 15 Hz if None."""
+def _motion(numbers: Numbers, frequency: float) -> tuple[Robot, Gait]:
+    """Return the robot and a tail that beats at a frequency [Hz]."""
     length = numbers["length"]
     robot = _body(length, numbers["wide"], numbers["fin"], 0.9995 * numbers["density"])
     wave = FilmedWave(
-        length=length, frequency=frequency or numbers["frequency"], wavelength=numbers["wavelength"], head=0.01,
+        length=length, frequency=frequency, wavelength=numbers["wavelength"], head=0.01,
         tail=0.5 * numbers["tail"],
     )  # fmt: skip
+    return robot, fit(robot, wave, name="tunabot", max_misfit=1.0).gait
+
+
+def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
+    """Return the robot with a tail that beats at a frequency [Hz], at 15 Hz if None."""
+    robot, gait = _motion(numbers, frequency or numbers["frequency"])
     return ModelSwimmer(
-        robot=robot, gait=fit(robot, wave, name="tunabot", max_misfit=1.0).gait, water=waters(numbers),
-        shedding=numbers["shedding"], added_mass=numbers["added_mass"], ramp=1.0,
+        robot=robot, gait=gait, water=waters(numbers), form=form_of(numbers), added_mass=numbers["added_mass"],
+        ramp=1.0,
     )  # fmt: skip
 
 
@@ -60,6 +68,30 @@ def read(numbers: Numbers, swimmer: ModelSwimmer, swum: SwimPrediction) -> Found
     return {"speed": swum.speed / swimmer.robot.length, "power": swum.power}
 
 
+def _water(given: Mapping[str, Given]) -> dict[str, Given]:
+    """Return the numbers of its water, from those of body and gait."""
+    numbers = {name: number.value for name, number in given.items()} | {"density": DENSITY}
+    robot, gait = _motion(numbers, numbers["frequency"])
+    return fresh(KnownSwim(robot=robot, gait=gait, wavelength=numbers["wavelength"], swing=numbers["tail"]))
+
+
+_GIVEN = {
+    "length": known(0.255, "m", _ZHU),
+    "frequency": known(15.0, "Hz", _ZHU),
+    "wide": Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the width, {_TUNA}"),
+    "fin": Given(
+        value=0.11, low=0.08, high=0.14, unit="body length", source=f"half of the caudal fin's span, {_TUNA}"
+    ),
+    "tail": Given(
+        value=0.15, low=0.08, high=0.20, unit="body length",
+        source="way of the tail from side to side: 0.15 to 0.2 body lengths is what fish of this kind do "
+        "(Bainbridge 1958, J. Exp. Biol. 35, 109), and a motor's link gives way at its highest frequency",
+    ),
+    "wavelength": Given(
+        value=1.2, low=0.9, high=1.6, unit="body length",
+        source="of fish of the tuna's kind: 1.0 to 1.3 (Di Santo et al. 2021, PNAS 118, e2113206118 [memory])",
+    ),
+}  # fmt: skip
 contestant = SingleContestant(
     Contestant(
         name="tunabot",
@@ -67,33 +99,7 @@ contestant = SingleContestant(
         description="A robot fish of 0.255 m that swims freely, its tail beating at 15 Hz. Length and frequency are "
         "published; "
         "outline and amplitude are not in what could be read, and have wide ranges.",
-        inputs={
-            "length": known(0.255, "m", _ZHU),
-            "frequency": known(15.0, "Hz", _ZHU),
-            "wide": Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the width, {_TUNA}"),
-            "fin": Given(
-                value=0.11, low=0.08, high=0.14, unit="body length", source=f"half of the caudal fin's span, {_TUNA}"
-            ),
-            "tail": Given(
-                value=0.15, low=0.08, high=0.20, unit="body length",
-                source="way of the tail from side to side: 0.15 to 0.2 body lengths is what fish of this kind do "
-                "(Bainbridge 1958, J. Exp. Biol. 35, 109), and a motor's link gives way at its highest frequency",
-            ),
-            "wavelength": Given(
-                value=1.2, low=0.9, high=1.6, unit="body length",
-                source="of fish of the tuna's kind: 1.0 to 1.3 (Di Santo et al. 2021, PNAS 118, e2113206118 [memory])",
-            ),
-        }
-        | fresh(
-            drag=(1.1, 0.8, 1.8),
-            rub=(2.0, 1.0, 4.0),
-            shed=(0.8, 0.4, 1.1),
-            why_drag="ellipses across, Hoerner 1965, Fluid-Dynamic Drag",
-            why_rub="1 is a plate; 1.1 to 1.9 on swimming fish (Anderson et al. 2001 [memory]); skin over a "
-            "mechanism, and a "
-            "stand that holds it, add to it",
-            why_shed="a thin fin sheds nearly all of Lighthill's momentum; the flow leaves a fin that swings far",
-        ),
+        inputs=_GIVEN | _water(_GIVEN),
         predicts={
             "speed": Quantity(unit="body length/s", words="speed at 15 Hz"),
             "power": Quantity(unit="W", words="mean power of the body on the water"),

@@ -5,6 +5,7 @@ from suchus.robot.design.article import crocodile, tables_of
 from suchus.robot.design.body import Robot
 from suchus.robot.design.chosen import Assumption, unit_at, value_at, with_values
 from suchus.robot.design.correction import LinkFactors, SectionCorrection
+from suchus.robot.design.form import BodyForm
 from suchus.robot.design.ground import Contact
 from suchus.robot.design.hinge import Cable, Crank, Hinge, LinearActuator, Servo, Spring, Turn
 from suchus.robot.design.hull import Chamber, Foam, Hull
@@ -49,6 +50,7 @@ __all__ = [
     "WATER_DENSITY",
     "WATER_VISCOSITY",
     "Assumption",
+    "BodyForm",
     "Cable",
     "Chamber",
     "Contact",

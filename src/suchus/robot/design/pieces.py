@@ -12,6 +12,7 @@ from jaxtyping import Float
 from suchus.core.errors import InvalidDesign
 from suchus.core.water_table import BALL, COLUMNS, DISC, WIDTH, column
 from suchus.robot.design.body import Robot
+from suchus.robot.design.form import NOSE_DRAG
 from suchus.robot.design.hull import Hull
 from suchus.robot.design.layout import Layout, LimbPlace, layout
 from suchus.robot.design.profile import profile, stations
@@ -22,8 +23,6 @@ _SAMPLES_PER_STRIP = 24
 """Stations within a strip over which its section is averaged [-]."""
 _BONES = 2
 """Sections of each link of a limb [-]."""
-_NOSE = 0.1
-"""Drag coefficient of the front, over the greatest section [-]; streamlined noses have 0.05 to 0.2."""
 FRONT, REAR = 0, 1
 """Kinds of chambers in the order of the table's columns."""
 SOLID = 2000.0
@@ -91,7 +90,7 @@ def _strips(place: Layout) -> list[np.ndarray]:
     tail_strip = strips[-1]
     a, b, c = tail_strip[slice(*COLUMNS["half"])]
     tail_strip[slice(*COLUMNS["shed"])], tail_strip[COLUMNS["shed_at"][0]] = (pi * b**2, pi * a**2), -c
-    strips[0][COLUMNS["end"][0]] = _NOSE * max(row[COLUMNS["volume"][0]] / (2 * row[16]) for row in strips)
+    strips[0][COLUMNS["end"][0]] = NOSE_DRAG * max(row[COLUMNS["volume"][0]] / (2 * row[16]) for row in strips)
     return strips
 
 

@@ -13,14 +13,13 @@ from mujoco.batch import MODEL_FIELDS, Batch, SimulationError
 
 from suchus.core import threads
 from suchus.robot.design import Robot, layout
-from suchus.robot.design.correction import SectionCorrection
 from suchus.robot.design.ground import Grains, Ground, Relief
 from suchus.robot.design.pieces import pieces
 from suchus.robot.motion import hip_height
 from suchus.sim.immersion import wetting
 from suchus.sim.land.afloat import surfaced
 from suchus.sim.land.clear import check_clear
-from suchus.sim.land.corrected import correct
+from suchus.sim.land.corrected import SectionChange, change_sections
 from suchus.sim.land.grain_loads import GrainLoads
 from suchus.sim.land.lake import Waters, gravity, up_direction
 from suchus.sim.land.meter import ABSOLUTE_POWER, Meter, ServoLaws, servo_effort
@@ -66,11 +65,7 @@ class SimulationBatch:
             timestep: time step of the physics [s].
             fast: whether contacts are solved in less time and with less accuracy, see ``simulate``.
         """
-        corrections = [None if run.lake is None else run.lake.correction for run in runs]
-        bodies = [
-            (run.robot, run.ground.relief, correction, _grains(run))
-            for run, correction in zip(runs, corrections, strict=True)
-        ]
+        bodies = [(run.robot, run.ground.relief, _section_change(run), _grains(run)) for run in runs]
         has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
         if has_water or runs[0].ground.grains is not None:
             wetting.install()
@@ -152,8 +147,7 @@ class SimulationBatch:
             sim: the run.
             run: run whose robot and ground it gets; its relief is not looked at.
         """
-        correction = None if run.lake is None else run.lake.correction
-        model = self._compile((run.robot, run.ground.relief, correction, _grains(run)))
+        model = self._compile((run.robot, run.ground.relief, _section_change(run), _grains(run)))
         self._body_fields |= {name for name in _ARRAY_FIELDS if not _are_equal(self.model, model, name)}
         for name in sorted(self._body_fields):
             self.field(name, sim)[:] = getattr(model, name)
@@ -546,6 +540,11 @@ class SimulationBatch:
             self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
 
 
+def _section_change(run: Run) -> SectionChange | None:
+    """Return what the lake of a run changes of its robot's pieces; None on dry land."""
+    return None if run.lake is None else run.lake.section_change
+
+
 def _grains(run: Run) -> Grains | None:
     """Return the grains of a run's ground, with its factor on their strength; None where it is hard."""
     grains = run.ground.grains
@@ -558,7 +557,7 @@ def _are_equal(first: Any, second: Any, name: str) -> bool:
 
 
 def _model(
-    body: tuple[Robot, Relief | None, SectionCorrection | None, Grains | None],
+    body: tuple[Robot, Relief | None, SectionChange | None, Grains | None],
     timestep: float,
     max_pieces: int,
     *,
@@ -570,13 +569,13 @@ def _model(
     A robot is one island, so that the bytes are the same, and a step takes a sixteenth less time.
 
     Args:
-        body: robot, relief of its ground, correction of its sections, and grains of its ground.
+        body: robot, relief of its ground, change of its sections, and grains of its ground.
         timestep: time step of the physics [s].
         max_pieces: pieces that the table of the water has room for; 0 on dry land.
         is_solved: whether a flow solver computes the water.
         fast: whether contacts are solved in less time and with less accuracy.
     """
-    robot, relief, correction, grains = body
+    robot, relief, change, grains = body
     if grains is not None:
         base_model = granular_model(robot, timestep, grains)
     elif max_pieces:
@@ -584,8 +583,8 @@ def _model(
     else:
         base_model = compile_model(robot, timestep, relief)
     model = copy.copy(base_model)
-    if correction is not None:
-        correct(model, correction)
+    if change is not None:
+        change_sections(model, change)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
     if fast and grains is None:  # this solver knows the mass matrix without what grains add
         model.opt.cone = mujoco.mjtCone.mjCONE_PYRAMIDAL

@@ -17,9 +17,11 @@ from suchus.core.checks import Checks, Schedule
 from suchus.core.errors import InvalidDesign
 from suchus.robot.design import GRAVITY, Robot, layout
 from suchus.robot.design.correction import SectionCorrection
+from suchus.robot.design.form import BodyForm
 from suchus.robot.design.ground import Ground
 from suchus.robot.design.water import Water
 from suchus.sim.immersion.sea import DEEPEST, FASTEST, Wave, level_axes
+from suchus.sim.land.corrected import SectionChange
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +53,9 @@ class Lake:
     correction: SectionCorrection | None = None
     """Factors on what each link's sections feel, as a flow found them at one Reynolds number; None leaves all as they
     are. ``coupling.earned_correction`` makes one."""
+    form: BodyForm | None = None
+    """Drag of nose, blunt end and folded limbs, and what the tail sheds, by coefficients; None leaves the nose of the
+    pieces, and the last strip to shed alone."""
 
     def __post_init__(self) -> None:
         """Refuse currents, levels, air fractions and factors outside their ranges."""
@@ -62,6 +67,13 @@ class Lake:
             check.number("splash", 0.0, 1.0, "")
             check.course("level", -DEEPEST, DEEPEST, "m")
             check.course("air_fraction", 0.0, 1.0, "")
+
+    @property
+    def section_change(self) -> SectionChange | None:
+        """What it changes of the robot's pieces; None for nothing."""
+        if self.form is None and self.correction is None:
+            return None
+        return SectionChange(form=self.form, correction=self.correction)
 
     def state_at(self, time: float) -> tuple[float, float]:
         """Return level [m] and air fraction [-] at a time [s]."""
@@ -101,8 +113,9 @@ class Lake:
 def lake_text(lake: Lake | None) -> str:
     """Return a lake as JSON text; the empty one stands for none."""
     lake_fields = {} if lake is None else asdict(lake)
-    if lake_fields.get("correction", 0) is None:
-        del lake_fields["correction"]
+    for name in ("correction", "form"):  # records made before these have neither
+        if lake_fields.get(name, 0) is None:
+            del lake_fields[name]
     return json.dumps(lake_fields, sort_keys=True) if lake_fields else ""
 
 

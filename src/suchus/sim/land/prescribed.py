@@ -25,7 +25,7 @@ from suchus.robot.motion import Gait, movement
 from suchus.robot.motion.axis import yaw_hinges
 from suchus.sim.immersion import wetting
 from suchus.sim.immersion.sea import DEEPEST
-from suchus.sim.land.corrected import correct
+from suchus.sim.land.corrected import change_sections
 from suchus.sim.land.lake import Lake
 from suchus.sim.model.build import SNOUT
 from suchus.sim.model.wet import wet_model
@@ -222,8 +222,8 @@ class _Submerged:
         wetting.install()
         self._model = copy(wet_model(limbless, _TIMESTEP, None, len(pieces(limbless)), acting=True))
         self._model.opt.gravity[:] = 0.0
-        if lake.correction is not None:
-            correct(self._model, lake.correction)
+        if lake.section_change is not None:
+            change_sections(self._model, lake.section_change)
         self._data = mujoco.MjData(self._model)
         self._lake = replace(lake, level=DEEPEST)
         self._hinges = yaw_hinges(robot)
