@@ -64,6 +64,13 @@ SAID = store.ROOT / "src" / "suchus" / "experiments" / time_steps.FILE
 """File of what outcomes say of the time step."""
 DIGITS = 2
 """Digits of a change that outcomes say; the last is rounded up [-]."""
+UNSAID: Mapping[tuple[str, str], str] = {
+    (
+        "bipedal_reach",
+        "held_share",
+    ): "the quick form stands for another time; `held` says the same change in seconds"
+}
+"""Moved measures whose change is another in the full form, by experiment and name, and the reason."""
 ROUNDING = 1e-6
 """Relative rounding of a change that outcomes say [-]."""
 RELATIVE_CHANGES = re.compile(r"(^|_)(change|gain|gained|loss)(_|$)")
@@ -245,7 +252,8 @@ def said_of(outcomes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     said = {}
     for name, outcome in sorted(outcomes.items()):
         if outcome["simulations"]:
-            rounded = {m: rounded_up(_number(row["greatest"])) for m, row in sorted(outcome["moved"].items())}
+            rows = {m: row for m, row in sorted(outcome["moved"].items()) if (name, m) not in UNSAID}
+            rounded = {m: rounded_up(_number(row["greatest"])) for m, row in rows.items()}
             changes = {m: change if isfinite(change) else None for m, change in rounded.items()}
             entry = {"measures": outcome["measures"], time_steps.FIELD: outcome[time_steps.FIELD], "changes": changes}
             said[name] = entry

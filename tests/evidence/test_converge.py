@@ -198,6 +198,15 @@ def test_a_quick_form_takes_the_time_step_of_the_full_form():
     assert converge.at_full_step(experiment) == replace(experiment.quick(), timestep=experiment.timestep)
 
 
+def test_what_is_not_said_is_listed():
+    outcomes = store.load("converge").values["quick"]
+    assert {
+        (name, measure)
+        for name, outcome in outcomes.items()
+        for measure in converge.beyond_said(name, outcome["moved"], converge.said())
+    } == set(converge.UNSAID)
+
+
 def test_outcomes_say_what_the_stored_result_holds():
     assert converge.said() == converge.said_of(store.load("converge").values["quick"])
 

@@ -79,12 +79,12 @@ def test_page_and_outcome_say_the_change(tmp_path, capsys, monkeypatch):
 
 @pytest.mark.parametrize(
     ("change", "said"),
-    [(0.0, ""), (0.02, ""), (inf, ""), (0.03, "contradicted within 0.03 of `diagonal_phase_error`")],
+    [(0.0, ""), (0.02, ""), (inf, ""), (0.03, "“contradicted” within 0.03 of `diagonal_phase_error`")],
 )
 def test_a_verdict_whose_margin_is_smaller_than_the_change_is_flagged(change, said):
     rule, measures = _rule_with_margin()
     text = time_steps.caution(rule, measures, {rule.measure: change}, CLAIMS)
-    assert text == (f"Smaller time steps may make it {said}." if said else "")
+    assert text == (f"Smaller time steps may give the word {said}." if said else "")
 
 
 def _rule_with_margin():

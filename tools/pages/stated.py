@@ -103,7 +103,7 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "judged": judged,
-                            "beyond_said": converge.beyond_said, "said": converge.said,
+                            "beyond_said": converge.beyond_said, "said": converge.said, "unsaid": converge.UNSAID,
                             "numbers": numbers, "known_claims": known_claims,
                             "greatest": greatest, "naturally": naturally,
                             "condition_label": condition_label}  # fmt: skip

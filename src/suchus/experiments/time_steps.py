@@ -122,8 +122,8 @@ def caution(
         ]
         words = list(dict.fromkeys(verdict.verdict for verdict in moved if verdict.verdict != word))
         if words:
-            found.append(f"{' or '.join(words)} within {change:.2g} of `{name}`")
-    return f"Smaller time steps may make it {listed(found)}." if found else ""
+            found.append(f"{' or '.join(f'“{other}”' for other in words)} within {change:.2g} of `{name}`")
+    return f"Smaller time steps may give the word {listed(found)}." if found else ""
 
 
 def _stem(name: str) -> str:
