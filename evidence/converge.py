@@ -1,21 +1,28 @@
 """Convergence in the time step: every measure at the step of its experiment, at a half and at a quarter of it.
 
 Usage: python -m evidence.converge [NAME ...] [--quick | --full] [--designs N]
+       python -m evidence.converge --say
 
 NAME is an experiment, or ``designs``. Each experiment runs with its step divided by 1, 2 and 4, and its measures are
-compared with their tolerances (``evidence.tolerance``). ``designs`` compares sampled robots and gaits of the study of
-the claims at 5, 2 and 1 ms. A finished part stays in ``out/converge``: a stopped program goes on from there. The
-outcome is the result ``converge`` of the store, and the page on time steps states it.
+compared with their tolerances (``evidence.tolerance``). A quick form takes the time step of the full form, with which
+the published numbers were computed. Outcomes say how much a measure changes with the time step
+(``suchus.experiments.time_steps``): the program lists what leaves its tolerance and changes by more than that.
+``--say`` runs nothing; it writes what outcomes say from the stored result.
+
+``designs`` compares sampled robots and gaits of the study of the claims at 5, 2 and 1 ms. A finished part stays in
+``out/converge``: a stopped program goes on from there. The outcome is the result ``converge`` of the store, and the
+page on time steps states it.
 """
 
 import argparse
 import json
+import re
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from math import inf, isfinite, log2, nan
+from math import ceil, floor, inf, isfinite, log2, log10, nan
 from pathlib import Path
 from typing import Any, Literal
 
@@ -27,6 +34,7 @@ from evidence import source, store, tolerance
 from suchus.core.errors import SuchusError
 from suchus.core.files import new_file
 from suchus.core.progress import Progress, silent
+from suchus.experiments import time_steps
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.experiments.experiment import Experiment
 from suchus.experiments.study.chunk import run_chunk
@@ -52,6 +60,23 @@ MODULES = ("suchus.experiments.catalog", "suchus.experiments.study", "suchus.sim
 """What the outcome depends on."""
 PAGE_WIDTH = 150
 """Width of tables that are printed into a file [character]."""
+SAID = store.ROOT / "src" / "suchus" / "experiments" / time_steps.FILE
+"""File of what outcomes say of the time step."""
+DIGITS = 2
+"""Digits of a change that outcomes say; the last is rounded up [-]."""
+UNSAID: Mapping[tuple[str, str], str] = {
+    (
+        "bipedal_reach",
+        "held_share",
+    ): "the quick form stands for another time; `held` says the same change in seconds"
+}
+"""Moved measures whose change is another in the full form, by experiment and name, and the reason."""
+ROUNDING = 1e-6
+"""Relative rounding of a change that outcomes say [-]."""
+RELATIVE_CHANGES = re.compile(r"(^|_)(change|gain|gained|loss)(_|$)")
+"""Names of measures without a unit that are relative changes, ``a / b - 1``, or differences of such."""
+ANGLES = re.compile(r"(^|_)(heading|turn|turned|turning)(_|$)")
+"""Names of angles that are differences of two headings [rad]."""
 PARTS = store.ROOT / "out" / NAME
 """Folder of the finished parts."""
 Form = Literal["quick", "full"]
@@ -99,6 +124,13 @@ class StepChange:
         return self.values[2] + (self.values[2] - self.values[1]) / (self.ratio - 1.0)
 
     @property
+    def greatest(self) -> float:
+        """Greatest difference of a smaller step's value, or the limit, from that at the step; infinite if unknown."""
+        ends = [*self.values[1:], *([self.limit] if isfinite(self.limit) else [])]
+        changes = [abs(value - self.values[0]) for value in ends]
+        return max(changes) if all(map(isfinite, changes)) else inf
+
+    @property
     def trend(self) -> Trend:
         """How it goes on."""
         if self.ratio >= MIN_RATIO:
@@ -112,8 +144,12 @@ class Part:
 
     measures: Mapping[str, float]
     """Measures, by name."""
+    units: Mapping[str, str]
+    """Unit of each measure, by name."""
     verdicts: Mapping[str, str]
     """Word of each verdict, by claim."""
+    timestep: float | None
+    """Time step of the experiment before it was divided [s]; None where its robot decides."""
     simulations: int
     """Number of simulations whose step was divided [-]."""
     seconds: float
@@ -133,7 +169,9 @@ def run_divided(experiment: Experiment, divisor: int, progress: Progress = silen
         outcome = experiment.run(progress)
     return Part(
         measures={name: float(measure.value) for name, measure in sorted(outcome.measures.items())},
+        units={name: measure.unit for name, measure in sorted(outcome.measures.items())},
         verdicts={verdict.claim.key: verdict.verdict for verdict in outcome.verdicts},
+        timestep=getattr(experiment, time_steps.FIELD, None),
         simulations=division.simulations,
         seconds=round(time.process_time() - start, 1),
     )
@@ -158,6 +196,82 @@ def step_changes(parts: Sequence[Part]) -> dict[str, StepChange]:
     return changes
 
 
+def is_small_difference(name: str, unit: str, change: StepChange) -> bool:
+    """Return whether a measure is a difference, and changes by less than the tolerance of what is subtracted.
+
+    A difference near zero has no meaningful two per cent. A relative change ``a / b - 1`` may move by two per cent of
+    the sizes of both values, over the reference; an angle between two headings by 0.02 rad.
+
+    Args:
+        name: of the measure.
+        unit: of the measure.
+        change: its values at the three steps.
+    """
+    if unit == "rad":
+        return ANGLES.search(name) is not None and change.greatest <= tolerance.RELATIVE
+    if unit != "-" or RELATIVE_CHANGES.search(name) is None:
+        return False
+    return change.greatest <= tolerance.RELATIVE * (abs(1.0 + change.values[0]) + 1.0)
+
+
+def rounded_up(change: float) -> float:
+    """Return a change to ``DIGITS`` digits, the last of which is rounded up; infinite as it is."""
+    if not change or not isfinite(change):
+        return change
+    step = 10.0 ** (floor(log10(change)) - DIGITS + 1)
+    return float(f"{ceil(change / step - ROUNDING) * step:.{DIGITS}g}")
+
+
+def beyond_said(name: str, moved: Mapping[str, Mapping[str, Any]], said: Mapping[str, Any]) -> list[str]:
+    """Return the measures of an experiment that leave their tolerance and change by more than outcomes say.
+
+    Args:
+        name: of the experiment.
+        moved: measures that left their tolerance, see ``experiment_outcome``.
+        said: what outcomes say, by experiment, as in the file ``SAID``.
+    """
+    changes = said.get(name, {}).get("changes", {})
+    return [
+        measure
+        for measure, row in moved.items()
+        if measure not in changes or _number(row["greatest"]) > (1.0 + ROUNDING) * _number(changes[measure])
+    ]
+
+
+def _number(change: float | None) -> float:
+    return inf if change is None else change
+
+
+def said_of(outcomes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Return what outcomes of experiments say of the time step, by experiment, as in the file ``SAID``.
+
+    Args:
+        outcomes: of the compared experiments, by name, see ``experiment_outcome``; those without simulations say
+            nothing.
+    """
+    said = {}
+    for name, outcome in sorted(outcomes.items()):
+        if outcome["simulations"]:
+            rows = {m: row for m, row in sorted(outcome["moved"].items()) if (name, m) not in UNSAID}
+            rounded = {m: rounded_up(_number(row["greatest"])) for m, row in rows.items()}
+            changes = {m: change if isfinite(change) else None for m, change in rounded.items()}
+            entry = {"measures": outcome["measures"], time_steps.FIELD: outcome[time_steps.FIELD], "changes": changes}
+            said[name] = entry
+    return said
+
+
+def write_said(outcomes: Mapping[str, Mapping[str, Any]], file: Path = SAID) -> Path:
+    """Write what outcomes of experiments say of the time step, and return its file.
+
+    Args:
+        outcomes: of the compared experiments, by name.
+        file: where.
+    """
+    with new_file(file) as draft:
+        draft.write_text(json.dumps(said_of(outcomes), indent=1) + "\n", encoding="utf-8")
+    return file
+
+
 def verdict_changes(parts: Sequence[Part]) -> dict[str, list[str]]:
     """Return the verdicts that differ between the steps, by claim, with the word at each step."""
     words = {claim: [part.verdicts.get(claim, "") for part in parts] for claim in parts[0].verdicts}
@@ -171,14 +285,18 @@ def experiment_outcome(parts: Sequence[Part]) -> dict[str, Any]:
         parts: with the step of the experiment, its half and its quarter; the first alone where nothing was divided.
     """
     moved = step_changes(parts) if len(parts) == len(DIVISORS) else {}
+    units = parts[0].units
     return {
         "measures": len(parts[0].measures),
         "simulations": parts[0].simulations,
+        time_steps.FIELD: parts[0].timestep,
         "seconds": round(sum(part.seconds for part in parts), 1),
         "moved": {
             name: {
                 "values": list(change.values), "tolerance": change.tolerance, "reason": change.reason,
                 "change": change.change, "order": change.order, "limit": change.limit, "trend": change.trend,
+                "greatest": change.greatest if isfinite(change.greatest) else None,
+                "small_difference": is_small_difference(name, units.get(name, ""), change),
             }
             for name, change in moved.items()
         },
@@ -274,6 +392,13 @@ class Store:
         return part
 
 
+def at_full_step(experiment: Experiment) -> Experiment:
+    """Return the quick form of an experiment with the time step of its full form."""
+    quick = experiment.quick()
+    step = getattr(experiment, time_steps.FIELD, None)
+    return quick if step is None else replace(quick, **{time_steps.FIELD: step})  # type: ignore[type-var]
+
+
 def compare_experiment(
     name: str, form: Form, parts: Store, say: Callable[[str], None] = lambda _: None
 ) -> dict[str, Any]:
@@ -285,7 +410,7 @@ def compare_experiment(
         parts: finished ones.
         say: called with each stage.
     """
-    experiment = EXPERIMENTS[name].quick() if form == "quick" else EXPERIMENTS[name]
+    experiment = at_full_step(EXPERIMENTS[name]) if form == "quick" else EXPERIMENTS[name]
     finished: list[Part] = []
     for divisor in DIVISORS:
         say(f"{name}: step / {divisor}")
@@ -311,18 +436,20 @@ def compare_designs(count: int, parts: Store, say: Callable[[str], None] = lambd
     return design_outcome(values)
 
 
-def table_of_measures(outcomes: Mapping[str, Mapping[str, Any]]) -> Table:
-    """Return a table of the measures that moved by more than their tolerance.
+def table_of_measures(outcomes: Mapping[str, Mapping[str, Any]], said: Mapping[str, Any]) -> Table:
+    """Return a table of the measures that moved by more than their tolerance and by more than outcomes say.
 
     Ends of an interval stand in it where their measure does not.
 
     Args:
         outcomes: of the experiments, by name, see ``experiment_outcome``.
+        said: what outcomes say, by experiment, as in the file ``SAID``.
     """
     table = Table("experiment", "measure", "step", "step / 2", "step / 4", "change", "of tolerance", "order", "trend")
     for name, outcome in outcomes.items():
-        for measure, row in outcome["moved"].items():
-            if measure.removesuffix("_low").removesuffix("_high") in set(outcome["moved"]) - {measure}:
+        beyond = beyond_said(name, outcome["moved"], said)
+        for measure, row in ((measure, outcome["moved"][measure]) for measure in beyond):
+            if measure.removesuffix("_low").removesuffix("_high") in set(beyond) - {measure}:
                 continue
             size, value = row["tolerance"], row["values"][2]
             table.add_row(
@@ -348,6 +475,11 @@ def table_of_designs(outcome: Mapping[str, Any]) -> Table:
     return table
 
 
+def said() -> dict[str, Any]:
+    """Return what outcomes say of the time step, by experiment."""
+    return dict(json.loads(SAID.read_text(encoding="utf-8")))
+
+
 def _stored() -> dict[str, Any]:
     """Return the outcome that the store holds; an empty one where it holds none."""
     return dict(store.load(NAME).values) if store.path_of(NAME).is_file() else {"quick": {}, "full": {}, DESIGNS: {}}
@@ -362,6 +494,7 @@ def _parser() -> argparse.ArgumentParser:
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--quick", dest="form", action="store_const", const="quick", help="quick forms (the default)")
     forms.add_argument("--full", dest="form", action="store_const", const="full", help="full forms, as stored results")
+    forms.add_argument("--say", dest="form", action="store_const", const="say", help="write what outcomes say")
     parser.add_argument("--designs", type=int, default=DESIGN_COUNT, metavar="N", help="number of sampled designs")
     parser.set_defaults(form="quick")
     return parser
@@ -375,6 +508,9 @@ def default_names() -> list[str]:
 def main(words: Sequence[str]) -> int:
     """Compare, print the tables and store the outcome; return 2 for bad input, 130 where somebody stopped it."""
     arguments = _parser().parse_args(words)
+    if arguments.form == "say":
+        print(write_said(_stored()["quick"]))
+        return 0
     names = arguments.names or default_names()
     if unknown := [name for name in names if name not in (*EXPERIMENTS, DESIGNS)]:
         choices = ", ".join((*EXPERIMENTS, DESIGNS))
@@ -409,7 +545,7 @@ def main(words: Sequence[str]) -> int:
                 status = 1
     page = Console() if sys.stdout.isatty() else Console(width=PAGE_WIDTH)
     if compared:
-        page.print(table_of_measures(compared))
+        page.print(table_of_measures(compared, said()))
     if designs:
         page.print(table_of_designs(designs))
     if compared or designs:
@@ -424,8 +560,10 @@ def _summary(name: str, outcome: Mapping[str, Any]) -> str:
     if not outcome["simulations"]:
         return f"{name}: no simulation whose step could be divided"
     verdicts = f", {len(outcome['verdicts'])} verdicts change" * bool(outcome["verdicts"])
+    beyond = len(beyond_said(name, outcome["moved"], said()))
     return (
-        f"{name}: {len(outcome['moved'])} of {outcome['measures']} measures move{verdicts}, {outcome['seconds']:.0f} s"
+        f"{name}: {len(outcome['moved'])} of {outcome['measures']} measures move, {beyond} by more than outcomes say"
+        f"{verdicts}, {outcome['seconds']:.0f} s"
     )
 
 

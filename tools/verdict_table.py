@@ -15,16 +15,17 @@ from evidence import renew, store
 from pages import article
 from pages.stated import kept, templates, wrapped
 from suchus.article.paper import CLAIMS
-from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
+from suchus.article.verdict import SHARES, SPARSE_SHARES, Rule, judge, ladder
 from suchus.article.verdict.judging import fragile, shown_unit
 from suchus.core.errors import IncompatibleRecord
-from suchus.experiments.claims import RULES
+from suchus.experiments import time_steps
+from suchus.experiments.claims import RULES, known_claims
 
 ROOT = Path(__file__).parents[1]
 NAME = "verdicts"
 README = ROOT / "README.md"
 PAGE = ROOT / "docs" / "verdicts.md"
-_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models", "why")
+_KEPT = ("verdict", "measured", "low", "high", "unit", "fragile", "models", "time_step", "why")
 
 
 def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
@@ -41,7 +42,7 @@ def collected(out: Path, *, part: bool = False) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = before | judged_again() if part else {}
     for file in sorted(out.glob("*/outcome.json")):
         for verdict in json.loads(file.read_text(encoding="utf-8"))["verdicts"]:
-            found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict[name] != []}
+            found[verdict["claim"]] = {name: verdict[name] for name in _KEPT if verdict.get(name, "") not in ([], "")}
     for claim, row in found.items():  # of the rules and shares that ship today, whatever shipped when it was run
         row["unit"] = shown_unit(RULES[claim], CLAIMS[claim]) if claim in RULES else row["unit"]
         row["fragile"] = claim in RULES and fragile(
@@ -59,6 +60,7 @@ def judged_again() -> dict[str, dict[str, Any]]:
     for rule in RULES.values():
         if rule.experiment in store.names():
             verdict = judge(rule, kept(rule.experiment))
+            time_step = step_caution(rule)
             row: dict[str, Any] = {
                 "verdict": verdict.verdict,
                 "measured": verdict.measured,
@@ -67,8 +69,17 @@ def judged_again() -> dict[str, dict[str, Any]]:
             }
             models = ladder.rows(verdict.voices, rule.form)
             row |= {"unit": verdict.unit, "fragile": verdict.fragile, "why": verdict.why}
+            row |= {"time_step": time_step} if time_step else {}
             found[rule.claim] = row | ({"models": models} if models else {})
     return found
+
+
+def step_caution(rule: Rule) -> str:
+    """Return which other words a rule has within the changes with the time step of the measures that are kept."""
+    compared = time_steps.COMPARED.get(rule.experiment)
+    if compared is None:
+        return ""
+    return time_steps.caution(rule, kept(rule.experiment), compared.changes, known_claims(rule.experiment))
 
 
 def written(readme: str, table: dict[str, dict[str, Any]]) -> str:

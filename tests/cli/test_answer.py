@@ -32,7 +32,7 @@ def test_the_numbers_that_carry_the_answer_are_measured(name, quick_outcome):
 def test_of_too_few_repeats_no_interval_is_shown():
     for repeats, shown in (([0.4], ""), ([0.4] * 4 + [0.5], ""), ([0.4] * 5 + [0.5], "0.4 to 0.5 m")):
         row = answer_rows(("forward",), estimated("forward", np.array(repeats), "m"))
-        assert row == [("forward", "0.4 m", shown)]
+        assert row == [("forward", "0.4 m", shown, "")]
 
 
 def test_an_interval_stands_beside_its_number_and_what_is_not_finite_is_left_out():
@@ -45,8 +45,8 @@ def test_an_interval_stands_beside_its_number_and_what_is_not_finite_is_left_out
         "gain_spine_swing": Measure(0.2, "m"),
     }
     assert answer_rows(question.answers, measures) == [
-        ("forward coordinated", "0.7 m", "0.6 to 0.75 m"),
-        ("gain spine swing", "0.2 m", ""),
+        ("forward coordinated", "0.7 m", "0.6 to 0.75 m", ""),
+        ("gain spine swing", "0.2 m", "", ""),
     ]
 
 

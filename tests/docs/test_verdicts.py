@@ -26,6 +26,17 @@ def test_the_rules_of_today_say_the_words_of_the_table_of_what_is_kept():
     assert len(again) > 30
     for claim, row in again.items():
         assert (claim, row["verdict"], row["fragile"]) == (claim, TABLE[claim]["verdict"], TABLE[claim]["fragile"])
+        assert (claim, row.get("time_step")) == (claim, TABLE[claim].get("time_step"))
+
+
+def test_a_verdict_that_the_time_step_may_change_says_so_in_its_row():
+    lines = article.verdicts().splitlines()
+    sensitive = [claim for claim, row in TABLE.items() if row.get("time_step")]
+    assert 0 < len(sensitive) < len(TABLE)
+    for claim, row in TABLE.items():
+        line = next(line for line in lines if line.startswith("| [") and f"(#{claim})" in line)
+        assert ("sensitive to the time step" in line) == (claim in sensitive)
+        assert row.get("time_step", "") in article.verdicts()
 
 
 def test_the_readme_counts_what_the_table_says():

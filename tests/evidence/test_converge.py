@@ -1,15 +1,24 @@
 """Convergence in the time step: measures of known order are found with their order and limit, exact ones are not."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from evidence import converge
-from evidence.converge import Store, compare_experiment, design_outcome, experiment_outcome, main, run_divided
+from evidence import converge, store
+from evidence.converge import (
+    StepChange,
+    Store,
+    compare_experiment,
+    design_outcome,
+    experiment_outcome,
+    main,
+    run_divided,
+)
 from suchus.core.progress import silent
+from suchus.experiments.catalog import EXPERIMENTS
 from suchus.sim.land.step_division import divided_step
 
 STEP = 0.004
@@ -47,7 +56,7 @@ class Synthetic:
         }
         word = "holds" if step > 0.6 * STEP else "does not hold"
         return SimpleNamespace(
-            measures={name: SimpleNamespace(value=value) for name, value in measures.items()},
+            measures={name: SimpleNamespace(value=value, unit="m") for name, value in measures.items()},
             verdicts=[SimpleNamespace(claim=SimpleNamespace(key="claim"), verdict=word)],
         )
 
@@ -128,6 +137,78 @@ def test_designs_have_quantiles_of_those_that_walk():
     displacement, cost = outcome["rows"]
     assert (displacement["q100"], displacement["bias"]) == (pytest.approx(0.2), pytest.approx(0.1))
     assert (cost["q100"], cost["beyond"]) == (pytest.approx(0.1), 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "values", "small"),
+    [
+        ("loss_knee", "-", (-0.9, -0.88, -0.879), True),  # 2 % of 1 + 0.1
+        ("loss_knee", "-", (-0.9, -0.87, -0.87), False),
+        ("loss_knee", "-", (0.0, 0.03, 0.03), True),  # 2 % of 1 + 1
+        ("loss_knee", "-", (0.0, 0.05, 0.05), False),
+        ("heading_open", "rad", (-0.002, 0.01, 0.01), True),
+        ("heading_open", "rad", (-0.002, 0.03, 0.03), False),
+        ("lean", "rad", (-0.002, 0.0, 0.001), False),  # no difference of headings
+        ("gain_leg", "m", (0.0, 0.001, 0.001), False),  # metres, no relative change
+        ("slip", "-", (0.0, 0.001, 0.001), False),
+    ],
+)
+def test_a_difference_is_small_by_what_is_subtracted(name, unit, values, small):
+    change = StepChange(values=values, tolerance=1e-3, reason="rounding")
+    assert converge.is_small_difference(name, unit, change) == small
+
+
+def test_the_greatest_change_includes_the_limit_and_is_infinite_without_a_number():
+    values = {"first order": (1.4, 1.2, 1.1), "back and forth": (1.0, 1.5, 1.1), "none": (np.nan, 1.0, 1.0)}
+    greatest = {
+        name: StepChange(values=found, tolerance=0.01, reason="rounding").greatest for name, found in values.items()
+    }
+    assert greatest == pytest.approx({"first order": 0.4, "back and forth": 0.5, "none": np.inf})
+
+
+@pytest.mark.parametrize(("change", "rounded"), [(0.0123, 0.013), (0.012, 0.012), (9.91, 10.0), (0.0, 0.0)])
+def test_a_change_is_rounded_up(change, rounded):
+    assert converge.rounded_up(change) == pytest.approx(rounded, rel=1e-12)
+
+
+def test_what_changes_by_more_than_is_said_is_listed(tmp_path):
+    outcomes = {
+        "synthetic": outcome_of(Synthetic()),
+        "still": outcome_of(Synthetic(divides=False)) | {"simulations": 0},
+    }
+    said = json.loads(converge.write_said(outcomes, tmp_path / "said.json").read_text())
+    moved = outcomes["synthetic"]["moved"]
+    assert list(said) == ["synthetic"]
+    assert said["synthetic"]["changes"]["linear"] == 0.08
+    assert converge.beyond_said("synthetic", moved, said) == []
+    said["synthetic"]["changes"]["linear"] = 0.079
+    assert converge.beyond_said("synthetic", moved, said) == ["linear"]
+    assert converge.beyond_said("synthetic", moved, {}) == list(moved)
+    assert "linear" not in _text(converge.table_of_measures(outcomes, converge.said_of(outcomes)))
+    assert "linear" in _text(converge.table_of_measures(outcomes, said))
+
+
+def _text(table):
+    return "".join(str(cell) for column in table.columns for cell in column.cells)
+
+
+def test_a_quick_form_takes_the_time_step_of_the_full_form():
+    experiment = EXPERIMENTS["joint_faults"]
+    assert experiment.quick().timestep > experiment.timestep
+    assert converge.at_full_step(experiment) == replace(experiment.quick(), timestep=experiment.timestep)
+
+
+def test_what_is_not_said_is_listed():
+    outcomes = store.load("converge").values["quick"]
+    assert {
+        (name, measure)
+        for name, outcome in outcomes.items()
+        for measure in converge.beyond_said(name, outcome["moved"], converge.said())
+    } == set(converge.UNSAID)
+
+
+def test_outcomes_say_what_the_stored_result_holds():
+    assert converge.said() == converge.said_of(store.load("converge").values["quick"])
 
 
 def test_an_unknown_name_and_a_bad_number_are_refused(capsys):

@@ -34,6 +34,16 @@ def test_a_foot_that_never_leaves_the_ground_stands_all_the_cycle():
     assert step(force([0.3, 0.4, 0.3]), 0.15).stance == 1.0
 
 
+@pytest.mark.parametrize(("gap", "stance"), [(3, 0.5), (4, 0.2)])
+@pytest.mark.parametrize("peak", [10, 36])
+def test_only_a_gap_of_a_twenty_fifth_of_the_cycle_ends_a_stance(gap, stance, peak):
+    vertical = np.zeros(100)
+    vertical[:20] = vertical[20 + gap : 50] = 0.3  # before and after the gap the foot stands
+    vertical[peak] = 0.6
+    expected = stance if gap == 3 or peak == 10 else (30 - gap) / 100
+    assert step(force(np.roll(vertical, 60)), 0.15).stance == pytest.approx(expected)
+
+
 @pytest.fixture(scope="module")
 def outcome():
     return replace(EXPERIMENTS["salamander"].quick(), settle=2).run()

@@ -204,7 +204,7 @@ def test_the_page_of_an_outcome_tells_answer_numbers_verdicts_settings_and_data(
     saved = {a["download"]: a["href"] for a in own.all("a") if "download" in a}
     assert {"numbers.csv", "first.data.csv", "second.data.csv", "rows.txt"} == set(saved)
     numbers = base64.b64decode(saved["numbers.csv"].partition(",")[2]).decode()
-    assert numbers.splitlines() == ["measure,value,unit", "way,-0.5,m", "turn,1.0,rad", "ghost,,m"]
+    assert numbers.splitlines() == ["measure,value,unit,time_step", "way,-0.5,m,", "turn,1.0,rad,", "ghost,,m,"]
 
 
 def test_settings_that_differ_from_the_shelf_stand_on_the_page():

@@ -23,7 +23,7 @@ from jinja2 import Environment, meta
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from evidence import renew, store
+from evidence import converge, renew, store
 from pages import passages
 from suchus.article.paper import AUTHORS, CLAIMS, TITLE
 from suchus.article.verdict import SHARES, SPARSE_SHARES, judge, ladder
@@ -103,6 +103,7 @@ def templates() -> Environment:
     environment.filters["three_digits"] = three_digits
     environment.globals |= {"article": CLAIMS, "experiments": EXPERIMENTS, "explained": explained, "asked": asked,
                             "judged": judged,
+                            "beyond_said": converge.beyond_said, "said": converge.said, "unsaid": converge.UNSAID,
                             "numbers": numbers, "known_claims": known_claims,
                             "greatest": greatest, "naturally": naturally,
                             "condition_label": condition_label}  # fmt: skip

@@ -21,6 +21,7 @@ from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judg
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.core.intervals import CONFIDENCE, fraction_interval, median_interval
 from suchus.core.progress import Progress, silent, staged
+from suchus.experiments import time_steps
 from suchus.experiments.claims import check_claims, known_claims, rules_of
 from suchus.robot.design import Robot, check_needs, lacking
 from suchus.robot.design.meaning import meanings, unit
@@ -46,6 +47,9 @@ class Measure:
     value: float
     unit: str
     """SI unit, ``-`` for none."""
+    step_change: float = 0.0
+    """Greatest change with smaller time steps, in its unit, see ``time_steps``; 0 where that is within its tolerance or
+    not known, infinite where there is no number at some steps."""
 
 
 class Measures(dict[str, Measure]):
@@ -260,7 +264,7 @@ class Experiment(ABC):
                 check_limits(self.robot, gait)  # first, so that an error names the user's gait and not a derived one
         with stopwatch() as seconds:
             simulated = self.simulate(progress)
-            measures = self.measure(simulated.record)
+            measures = self._with_step_changes(self.measure(simulated.record))
             numbers = {name: float(measure.value) for name, measure in measures.items()}
             unjudged = self.unjudged()
             return Outcome(
@@ -316,7 +320,22 @@ class Experiment(ABC):
 
     def _judge_claims(self, numbers: Mapping[str, float], record: xr.Dataset) -> tuple[Verdict, ...]:
         unable, claims = self.unable(record), known_claims(self.name())
-        return tuple(judge(rule, numbers, unable=unable, claims=claims) for rule in self.rules())
+        verdicts = [judge(rule, numbers, unable=unable, claims=claims) for rule in self.rules()]
+        compared = time_steps.comparison_of(self)
+        if compared is None:
+            return tuple(verdicts)
+        return tuple(
+            replace(verdict, time_step=time_steps.caution(verdict.rule, numbers, compared.changes, claims))
+            for verdict in verdicts
+        )
+
+    def _with_step_changes(self, measures: Mapping[str, Measure]) -> Measures:
+        """Return measures, with their changes with the time step where these are known."""
+        compared = time_steps.comparison_of(self)
+        changes = {} if compared is None else compared.changes
+        return Measures(
+            {name: replace(measure, step_change=changes.get(name, 0.0)) for name, measure in measures.items()}
+        )
 
     @classmethod
     def has_word(cls, claim: str, measures: Mapping[str, Measure]) -> bool:

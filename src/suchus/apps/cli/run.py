@@ -99,9 +99,11 @@ def show_outcome(question: Experiment, saved_run: SavedRun) -> None:
         console.print(escape(line))
     console.print(escape(answer(saved_run.outcome.statement)))
     rows = [] if saved_run.outcome.too_short else answer_rows(question.answers, saved_run.outcome.measures)
-    numbers = Table("measure", "value", *["interval"] * any(row[2] for row in rows), box=None, padding=(0, 2, 0, 0))
+    shown = [place for place in range(4) if place < 2 or any(row[place] for row in rows)]
+    headings = ("measure", "value", "interval", "time step")
+    numbers = Table(*(headings[place] for place in shown), box=None, padding=(0, 2, 0, 0))
     for row in rows:
-        numbers.add_row(*(escape(cell) for cell in row if cell or len(numbers.columns) > 2))
+        numbers.add_row(*(escape(row[place]) for place in shown))
     if rows:
         console.print(numbers)
     if saved_run.outcome.verdicts:

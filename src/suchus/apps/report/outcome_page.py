@@ -8,7 +8,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from math import isfinite, nan
+from math import inf, isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +42,7 @@ DIGEST_LENGTH = 16
 """Letters of the digest of the settings that pages show [-]."""
 MAX_ANSWER_MEASURES = 6
 """Numbers that stand below an answer [-]."""
-_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": ()}
+_LACKING: Mapping[str, Any] = {"fragile": False, "quote": "", "of": "", "rule": (), "models": (), "time_step": ""}
 """Defaults of entries that older outcomes lack."""
 _WORDS = {"com": "centre of mass", "pp": "peak to peak", "p99": "99th percentile"}
 """Abbreviations in the names of measures, and their long forms."""
@@ -70,7 +70,7 @@ def render_outcome_page(result: Result) -> str:
     sentences = _sentences(outcome["decides"])
     robot = _setting_name(outcome, "robot")
     measures = {
-        name: Measure(nan if measure["value"] is None else measure["value"], measure["unit"])
+        name: Measure(nan if measure["value"] is None else measure["value"], measure["unit"], _step_change(measure))
         for name, measure in outcome["measures"].items()
     }
     first_replay = result.replays[0].file if result.replays else None
@@ -87,6 +87,7 @@ def render_outcome_page(result: Result) -> str:
         "citation": citation(outcome),
         "gait": _setting_name(outcome, "gait"),
         "verdicts": list(verdict_rows(result)),
+        "step_changes": {name: step_change(measure) for name, measure in measures.items()},
         "carried": () if outcome.get("too_short") else answer_rows(outcome.get("answers", ()), measures),
         "differs": outcome.get("differs"),
         "replay": read_text(first_replay, 2 * _HEAVY) if first_replay is not None and is_embedded else "",
@@ -166,8 +167,23 @@ def _tex(text: str) -> str:
     return re.sub(r"([&%$#_])", r"\\\1", text)
 
 
-def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str]]:
-    """Return name, value and interval of the measures that carry an answer, in words.
+def step_change(measure: Measure) -> str:
+    """Return how much a measure changes with smaller time steps, in words; empty where that is nothing or not known."""
+    if not measure.step_change:
+        return ""
+    if not isfinite(measure.step_change):
+        return "no number at some"
+    return f"±{quantity(measure.step_change, measure.unit, 2)}"
+
+
+def _step_change(measure: Mapping[str, Any]) -> float:
+    """Return the change of a measure with smaller time steps, as ``Measure`` holds it."""
+    change = measure.get("time_step", 0.0)
+    return inf if change is None else change
+
+
+def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list[tuple[str, str, str, str]]:
+    """Return name, value, interval and change with the time step of the measures that carry an answer, in words.
 
     A measure that a run has not, as one of another gait, or that is no finite number is left out;
     ``MAX_ANSWER_MEASURES`` are taken.
@@ -195,6 +211,7 @@ def answer_rows(answers: Sequence[str], measures: Mapping[str, Measure]) -> list
                 " ".join(_WORDS.get(word, word) for word in name.split("_")),
                 quantity(measures[name].value, unit, 3),
                 spread,
+                step_change(measures[name]),
             )
         )
     return rows
@@ -238,11 +255,16 @@ def _numbers(measures: Mapping[str, Measure]) -> str:
     """Return all numbers as CSV, with nothing for one that is not finite."""
     text = io.StringIO()
     rows = (
-        (name, repr(measure.value) if isfinite(measure.value) else "", measure.unit)
+        (name, repr(measure.value) if isfinite(measure.value) else "", measure.unit, _step_cell(measure.step_change))
         for name, measure in measures.items()
     )
-    csv.writer(text).writerows([("measure", "value", "unit"), *rows])
+    csv.writer(text).writerows([("measure", "value", "unit", "time_step"), *rows])
     return text.getvalue()
+
+
+def _step_cell(change: float) -> str:
+    """Return the change of a measure with the time step as a cell of CSV: nothing where it is none or not known."""
+    return repr(change) if change else ""
 
 
 def _data(result: Result) -> Iterator[dict[str, Any]]:

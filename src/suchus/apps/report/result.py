@@ -26,6 +26,7 @@ class _OutcomePart(BaseModel):
 class _Measure(_OutcomePart):
     value: FiniteFloat | None
     unit: str
+    time_step: FiniteFloat | None = None
 
 
 class _Share(_OutcomePart):
@@ -57,6 +58,7 @@ class _Verdict(_OutcomePart):
     share: _Share | None = None
     unswept: str = ""
     too_few: str = ""
+    time_step: str = ""
 
 
 class _Provenance(_OutcomePart):
@@ -85,6 +87,7 @@ class _Outcome(_OutcomePart):
     replays: list[_File] = []
     unjudged: str = ""
     too_short: str = ""
+    time_steps: str = ""
 
 
 def check_described(outcome: Any, file: Path) -> None:

@@ -13,6 +13,7 @@ from suchus.apps.report.outcome_page import write_outcome_page
 from suchus.apps.report.result import OUTCOME, RECORD, content_hash
 from suchus.article.verdict import Verdict, ladder
 from suchus.core import files as record
+from suchus.experiments import time_steps
 from suchus.experiments.experiment import Experiment, Measure, Outcome
 from suchus.visual import figures as pictures
 from suchus.visual.pages import number
@@ -75,6 +76,7 @@ def describe(outcome: Outcome, experiment: Experiment, captions: Mapping[str, st
         "settings": record.plain(outcome.settings),
         "differs": changed_settings(experiment),
         "answers": list(experiment.answers),
+        "time_steps": time_steps.sentence(experiment),
         "measures": {name: _measure(measure) for name, measure in outcome.measures.items()},
         "verdicts": [_verdict(verdict) for verdict in outcome.verdicts],
         "figures": [{"name": name, "caption": text} for name, text in captions.items()],
@@ -108,7 +110,9 @@ def _setting_text(value: Any) -> str:
 
 
 def _measure(measure: Measure) -> dict[str, Any]:
-    return {"value": _finite(measure.value), "unit": measure.unit}
+    """Return a measure for ``outcome.json``; ``time_step`` where the time step changes it, null if unbounded."""
+    described = {"value": _finite(measure.value), "unit": measure.unit}
+    return described | ({"time_step": _finite(measure.step_change)} if measure.step_change else {})
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
@@ -138,6 +142,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "share": None if share is None else record.plain(asdict(share)),
         "unswept": rule.unswept,
         "too_few": "" if verdict.too_few is None else str(verdict.too_few),
+        "time_step": verdict.time_step,
         "why": " ".join(verdict.why.split()),
     }
 

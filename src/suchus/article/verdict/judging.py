@@ -163,6 +163,8 @@ class Verdict:
     """What each model says; none where one measure decides."""
     too_few: SparseShare | None = None
     """What designs say that are too few to know a share; None where a share is known, or no design was asked."""
+    time_step: str = ""
+    """Other words within the changes of the measures with the time step, in a sentence; empty where there are none."""
 
     @property
     def unit(self) -> str:

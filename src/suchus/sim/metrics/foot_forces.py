@@ -9,6 +9,7 @@ import xarray as xr
 
 from suchus.robot.design import GRAVITY
 from suchus.sim.metrics.contact import limb_load
+from suchus.sim.metrics.gait import MIN_STANCE_FRACTION, without_short_intervals
 from suchus.sim.metrics.window import mean_cycle
 
 PARTS = ("vertical", "sideways", "foreaft")
@@ -87,6 +88,9 @@ class FootStep(NamedTuple):
 def step(force: xr.DataArray, min_force: float) -> FootStep:
     """Return what stands out in the force on one foot over a cycle.
 
+    Its stance is the interval around the greatest net force. Gaps shorter than ``MIN_STANCE_FRACTION`` of the cycle, in
+    which a foot on stiff ground bounces, belong to it.
+
     Args:
         force: force of one foot, ``phase part`` [body weight].
         min_force: vertical force from which it stands [body weight].
@@ -95,6 +99,8 @@ def step(force: xr.DataArray, min_force: float) -> FootStep:
     net = np.sqrt(sum(component**2 for component in parts.values()))
     top, count = int(np.argmax(net)), len(net)
     stands = np.roll(parts["vertical"], -top) > min_force  # begins at the peak
+    closed = np.append(stands, stands[0])  # ends at the peak too, so that a gap just before it is between stances
+    stands = without_short_intervals(closed, round(MIN_STANCE_FRACTION * count), values=(False,))[:-1]
     samples_after = count if stands.all() else int(np.argmin(stands))
     samples_before = 0 if stands.all() else int(np.argmin(stands[::-1]))
     length = min(samples_after + samples_before, count)

@@ -68,7 +68,7 @@ def _stance_of_limb(load: np.ndarray, period: float, sample_interval: float) -> 
     mean = np.convolve(padded, np.full(2 * half_window + 1, 1.0 / (2 * half_window + 1)), mode="valid")
     is_decided = (mean > STANCE_BEGIN_LOAD) | (mean < STANCE_END_LOAD)
     last_decision = np.maximum.accumulate(np.where(is_decided, np.arange(len(load)), 0))
-    in_stance = _without_short(mean[last_decision] > STANCE_BEGIN_LOAD, round(window_samples))
+    in_stance = without_short_intervals(mean[last_decision] > STANCE_BEGIN_LOAD, round(window_samples))
     return in_stance & _between_loads(in_stance, np.nan_to_num(load))
 
 
@@ -91,12 +91,17 @@ def _between_loads(in_stance: np.ndarray, load: np.ndarray) -> np.ndarray:
     return np.asarray((index >= first[interval_index]) & (index <= last[interval_index]))
 
 
-def _without_short(state: np.ndarray, samples: int) -> np.ndarray:
-    """Return a state over time without intervals shorter than some samples: false ones first, then true ones.
+def without_short_intervals(state: np.ndarray, samples: int, values: tuple[bool, ...] = (False, True)) -> np.ndarray:
+    """Return a state over time without intervals shorter than some samples, shape (time,).
 
     Intervals at the ends of the record stay: nobody knows how long they are.
+
+    Args:
+        state: true or false, shape (time,).
+        samples: number of samples from which on an interval stays [-].
+        values: values whose short intervals are removed, in this order.
     """
-    for value in (False, True):
+    for value in values:
         starts = np.concatenate([[0], np.flatnonzero(np.diff(state)) + 1])
         lengths = np.diff([*starts, len(state)])
         is_short = (state[starts] == value) & (lengths < samples)
