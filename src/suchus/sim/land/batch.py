@@ -72,7 +72,7 @@ class SimulationBatch:
             for run, correction in zip(runs, corrections, strict=True)
         ]
         has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
-        if has_water or runs[0].ground.grains is not None:
+        if has_water:
             wetting.install()
         max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
         is_solved = runs[0].solved_flow is not None
