@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from suchus.experiments.catalog.feedback.experiment import ARMS, STARTS, _loop_measures, experiment
+from suchus.experiments.catalog.feedback.experiment import ARMS, STARTS, _loop_measures, experiment, start_measures
+from suchus.experiments.catalog.feedback.known import KnownStarts
 from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
 from suchus.sim.land import Limp, Locked, Run, simulate
 from suchus.sim.metrics import displacement, heading
-from suchus.sim.metrics.coordination import cycles_until, phase_error
+from suchus.sim.metrics.coordination import PHASE_TOLERANCE, cycles_until, phase_error
 
 STEP = 0.005
 
@@ -171,3 +172,102 @@ def test_every_start_whose_distance_is_measured_walks(quick_outcome):
     assert walked.sel(law=["closed_noisy", "isolated_noisy", "cross_load", "wrong_sign"]).all()
     assert walked.sel(law="off").values.tolist() == [True, False]
     assert record.start_phase.notnull().all()
+
+
+CYCLES, HOLD, SAMPLES = 6, 2.0, 40  # of a start, and samples of each cycle
+
+
+def ended(errors, gait, is_shown=None):
+    """Return phase errors (start, sample) as far as each start goes on, NaN from then on, and the times [s]."""
+    times = 1.0 + gait.period * np.arange(CYCLES * SAMPLES + 1) / SAMPLES
+    shown = np.zeros(len(errors), bool) if is_shown is None else np.array(is_shown)
+    ends, going, kept = (
+        KnownStarts(gait, CYCLES, HOLD, is_shown=shown),
+        np.arange(len(errors)),
+        np.full_like(errors, np.nan),
+    )
+    for sample, time in enumerate(times):
+        kept[going, sample] = errors[going, sample]
+        phase = np.tile(gait.limb_phases, (len(going), 1))
+        phase[:, 0] += errors[going, sample]
+        going = going[~ends(going, time, phase)]
+    return kept, times
+
+
+def settled(errors, times, gait):
+    traces = xr.DataArray(errors, dims=("start", "time"), coords={"time": times})
+    return cycles_until(traces, gait.period, start=1.0, hold=HOLD).values
+
+
+def in_step_from(cycle, until=np.inf):
+    """Return a phase error that is outside the tolerance but between two cycles, each the first sample of its kind."""
+    cycles = np.arange(CYCLES * SAMPLES + 1) / SAMPLES
+    return np.where((cycles >= cycle - 1e-9) & (cycles < until - 1e-9), 0.9, 1.1) * PHASE_TOLERANCE
+
+
+def test_starts_end_once_it_is_known_and_count_as_those_that_go_on(crawl_gait):
+    last = CYCLES - HOLD
+    errors = np.array([in_step_from(c) for c in (0.0, 1.5, 2.0, last, last + 1 / SAMPLES, last + 1.0, CYCLES + 1.0)])
+    kept, times = ended(errors, crawl_gait)
+    np.testing.assert_array_equal(settled(kept, times, crawl_gait), settled(errors, times, crawl_gait))
+    assert np.isfinite(settled(errors, times, crawl_gait)).tolist() == [True] * 4 + [False] * 3
+    lasted = (np.isfinite(kept).sum(axis=1) - 1) / SAMPLES
+    assert lasted[:2] == pytest.approx([3.0, 1.5 + 3.0 - 1 / SAMPLES])  # three cycles in step, none too few
+    assert lasted[3] == CYCLES  # out of step until just before, and in step for two cycles
+    assert lasted[4:] == pytest.approx([last] * 3)  # out of step when less than two cycles are left
+
+
+def test_a_start_that_leaves_within_three_cycles_goes_on(crawl_gait):
+    errors = np.array([in_step_from(0.5, 0.5 + 2.9), in_step_from(0.5, 0.5 + 3.1)])
+    kept, times = ended(errors, crawl_gait)
+    assert np.isfinite(settled(errors, times, crawl_gait)).tolist() == [False, False]
+    assert np.isfinite(settled(kept, times, crawl_gait)).tolist() == [False, True]  # the second is what STAY risks
+
+
+def test_a_start_that_is_shown_goes_on_to_the_end(crawl_gait):
+    kept, _ = ended(np.array([in_step_from(0.0), in_step_from(9.0)]), crawl_gait, is_shown=[True, True])
+    assert np.isfinite(kept).all()
+
+
+def test_random_walks_of_the_phase_are_counted_the_same_whether_or_not_lost_starts_end(crawl_gait):
+    rng = np.random.default_rng(1)
+    errors = rng.normal(0.0, 0.005, (400, CYCLES * SAMPLES + 1))
+    errors[:, 0] = rng.uniform(0.0, 0.4, 400)
+    errors = np.clip(np.abs(np.cumsum(errors, axis=1)), 0.0, 0.5)
+    kept, times = ended(errors, crawl_gait)
+    whole, short = settled(errors, times, crawl_gait), settled(kept, times, crawl_gait)
+    differs = np.flatnonzero(whole != short)
+    for start in differs:  # only such as were in step for three cycles, and left
+        end = np.isfinite(kept[start]).sum()
+        assert (kept[start, end - round(3.0 * SAMPLES) : end] <= PHASE_TOLERANCE).all()
+    assert np.isfinite(whole).sum() > 10
+    assert np.isnan(kept).any(axis=1).sum() > 300
+
+
+def test_measures_of_starts_that_end_are_those_of_their_own_last_cycles(robot, crawl_gait):
+    question = replace(
+        experiment.quick(), extent="verdicts", starts=2, compared_starts=1, sharing_starts=1, judged_cycles=3, cycles=3
+    )
+    whole = replace(question, extent="whole")
+    (short_record, _), (record, _) = (q._start_record(lambda *_: None) for q in (question, whole))
+    lost = short_record.start_phase.sel(law="wrong_sign").isel(leg=0)
+    assert lost.notnull().sum("start_time").values[0] > lost.notnull().sum("start_time").values[1]  # the first is shown
+    short, full = (start_measures(r, question.gait, question.hold) for r in (short_record, record))
+    assert short["converged_wrong_sign"] == full["converged_wrong_sign"]
+    assert short["converged_cross_load"] == full["converged_cross_load"]
+    assert short["way_shared"] == full["way_shared"]
+
+
+def test_what_is_told_of_a_disturbance_decides_which_rules_walk_alone():
+    short = experiment.for_verdicts()
+    alone = {
+        (name, arm) for name in short.disturbances for arm in ("limbs", "spine", "tail") if short._has_cell(name, arm)
+    }
+    assert alone == {
+        ("none", "limbs"),
+        ("none", "spine"),
+        ("none", "tail"),
+        ("locked_spine", "spine"),
+        ("uphill", "tail"),
+    }
+    assert all(experiment._has_cell(name, arm) for name in experiment.disturbances for arm in ARMS)

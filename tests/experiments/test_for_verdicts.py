@@ -9,15 +9,27 @@ import xarray as xr
 
 from suchus.article.verdict import judge
 from suchus.experiments.catalog import EXPERIMENTS
+from suchus.experiments.catalog.feedback.experiment import _TOLD_LAWS, DISTURBANCES
 from suchus.visual.figures import styled
 
 NAMES = [name for name in EXPERIMENTS if EXPERIMENTS[name].for_verdicts() != EXPERIMENTS[name]]
 
 
-def told_disturbances(record: xr.Dataset) -> xr.Dataset:
-    is_told = record.disturbance.isin(EXPERIMENTS["feedback"].for_verdicts().disturbances)
-    disturbed = [name for name in record.data_vars if "disturbance" in record[name].dims]
-    return record.assign({name: record[name].where(is_told) for name in disturbed})
+def told_walks(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without the disturbances, single rules and laws of which no verdict tells."""
+    short = EXPERIMENTS["feedback"].for_verdicts()
+    cells = [[n in short.disturbances and short._has_cell(n, a) for a in record.arm.values] for n in DISTURBANCES]
+    is_told = {
+        "disturbance": xr.DataArray(cells, coords={"disturbance": [*DISTURBANCES], "arm": record.arm}),
+        "law": record.law.isin(_TOLD_LAWS),
+    }
+    kept = {
+        name: record[name].where(mask)
+        for dim, mask in is_told.items()
+        for name in record.data_vars
+        if dim in record[name].dims
+    }
+    return record.assign(kept)
 
 
 def needed_swims(record: xr.Dataset) -> xr.Dataset:
@@ -30,7 +42,7 @@ def needed_swims(record: xr.Dataset) -> xr.Dataset:
 
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": lambda record: record.drop_dims("direction"),
-    "feedback": told_disturbances,
+    "feedback": told_walks,
     "joint_faults": lambda record: record.isel(joint=slice(0, 4)),
     "swimming": needed_swims,
     "terrain": lambda record: record.drop_sel(arm="switching"),

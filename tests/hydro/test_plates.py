@@ -15,7 +15,7 @@ from suchus.robot.design.ground import Grains
 from suchus.robot.robots import ROBOTS
 from suchus.sim.hydro.plates import generic_stress
 from suchus.sim.immersion import wetting
-from suchus.sim.immersion.attachment import attach_table
+from suchus.sim.immersion.attachment import GRAINS_ON_PLATES, attach_table
 from suchus.sim.immersion.grains import attach_grains, plates_of
 from suchus.sim.model.granular import granular_model
 
@@ -64,9 +64,9 @@ def plate(normal, depth, creep_speed=1e-9):
     body = spec.worldbody.add_body(pos=[0, 0, -depth])
     body.add_freejoint()
     body.add_geom(size=[0.01, 0, 0], pos=[0.02, 0, 0], mass=0.1, contype=0, conaffinity=0)
-    wetting.install()
+    wetting.install(GRAINS_ON_PLATES)
     row = np.array([[0.0, 0.0, 0.0, *normal, AREA]])
-    attach_table(spec, pack_plates(np.array([1.0]), [row], STRENGTH, creep_speed), user_numbers(1), acting=True)
+    attach_table(spec, pack_plates(np.array([1.0]), [row], STRENGTH, creep_speed), user_numbers(1), GRAINS_ON_PLATES)
     model = spec.compile()
     return model, mujoco.MjData(model)
 

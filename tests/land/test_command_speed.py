@@ -25,7 +25,7 @@ def test_a_constant_rate_is_its_own_greatest_speed():
     run = Run(robot=ROBOTS["caiman"], gait=GAITS["low_crawl"])
     speeds = CommandSpeeds([run], 0.01)
     for tick in range(5):
-        speeds.observe(np.full((1, 19), 0.03 * tick))
+        speeds.observe(np.full((1, 19), 0.03 * tick), np.array([False]))
     assert speeds.max_speeds == pytest.approx(3.0)
 
 

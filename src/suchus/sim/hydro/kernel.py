@@ -1,7 +1,7 @@
-"""The compiled kernel: reads a MuJoCo model and its data, gathers what the water does, hands it to the joints.
+"""The compiled kernels, one for each kind of table: they hand what water or grains do to the joints of a MuJoCo model.
 
-It is given addresses and byte offsets (see ``immersion.structs``), so that it needs neither MuJoCo nor Python's lock
-while it runs. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
+They are given addresses and byte offsets (see ``immersion.structs``), so that they need neither MuJoCo nor Python's
+lock while they run. All spatial vectors are MuJoCo's: rotation first, about the centre of mass of the whole tree.
 """
 
 import numpy as np
@@ -20,6 +20,7 @@ from suchus.core.water_table import (
     LEVEL,
     LEVEL_COUNT,
     LOAD_WIDTH,
+    MAGIC,
     NUMBERS,
     POWER,
     SHAPE_COUNT,
@@ -85,24 +86,34 @@ _ROTATIONAL_INERTIA, _COUPLING_INERTIA, _LINEAR_INERTIA = (
 )
 
 
-@compile_kernel
-def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
-    """Add the water's forces to the passive forces and its added mass to the mass matrix; return whether that changed.
+@compile_inline
+def _numbers(model: int, offsets: np.ndarray, start: int, size: int) -> np.ndarray:
+    """Return a table among the custom numbers of a model.
 
     Args:
         model: address of a ``mjModel``.
+        offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
+        start: where it starts [-].
+        size: how many numbers it has [-].
+    """
+    words = carray(model, (4096,), np.int64)
+    return carray(pointer(words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
+
+
+@compile_kernel
+def apply_to_pieces(model: int, data: int, offsets: np.ndarray) -> bool:
+    """Add the water's forces to the passive forces and its added mass to the mass matrix; return whether that changed.
+
+    Args:
+        model: address of a ``mjModel`` that carries a table of pieces; another table is left alone.
         data: address of its ``mjData``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
     """
     magic, start, size = find_table(model, offsets)
-    if magic == 0.0:
+    if magic != MAGIC:
         return False
     model_words = carray(model, (4096,), np.int64)
-    numbers = carray(pointer(model_words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
-    if magic == SHAPE_MAGIC:
-        return _apply_to_shapes(model, data, offsets, numbers)
-    if magic == PLATE_MAGIC:
-        return _apply_to_plates(model, data, offsets, numbers)
+    numbers = _numbers(model, offsets, start, size)
     if model_words[offsets[memory.NUSER] // 8] < NUMBERS:
         return False
     if model_words[offsets[memory.NUSER] // 8] > NUMBERS:
@@ -128,16 +139,19 @@ def apply_water(model: int, data: int, offsets: np.ndarray) -> bool:
     return True
 
 
-@compile_inline
-def _apply_to_shapes(model: int, data: int, offsets: np.ndarray, numbers: np.ndarray) -> bool:
-    """Do what ``apply_water`` does, with a table of shapes; leave the load of each body in the user data.
+@compile_kernel
+def apply_to_shapes(model: int, data: int, offsets: np.ndarray) -> bool:
+    """Do what ``apply_to_pieces`` does, with a table of shapes; leave the load of each body in the user data.
 
     Args:
-        model: address of a ``mjModel``.
+        model: address of a ``mjModel`` that carries such a table; another table is left alone.
         data: address of its ``mjData``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
-        numbers: the table with its header and what the water is.
     """
+    magic, start, size = find_table(model, offsets)
+    if magic != SHAPE_MAGIC:
+        return False
+    numbers = _numbers(model, offsets, start, size)
     header, user_start = numbers[:SHAPE_HEADER], int(numbers[USERDATA_START])
     motion, bodies = read_motion(model, data, offsets, user_start), read_bodies(model, offsets)
     loads = read_loads(model, data, offsets, user_start)
@@ -194,18 +208,21 @@ def _apply_to_shapes(model: int, data: int, offsets: np.ndarray, numbers: np.nda
     return True
 
 
-@compile_inline
-def _apply_to_plates(model: int, data: int, offsets: np.ndarray, numbers: np.ndarray) -> bool:
+@compile_kernel
+def apply_to_plates(model: int, data: int, offsets: np.ndarray) -> bool:
     """Add the resistance of grains to the passive forces, and its damping to the mass matrix; return whether any acts.
 
     The matrix grows by damping times time step, so that the resistance is that of the velocity at the end of the step.
 
     Args:
-        model: address of a ``mjModel``.
+        model: address of a ``mjModel`` that carries a table of plates; another table is left alone.
         data: address of its ``mjData``.
         offsets: offsets of ``FIELDS`` and ``DATA_FIELDS`` [byte].
-        numbers: the table of plates.
     """
+    magic, start, size = find_table(model, offsets)
+    if magic != PLATE_MAGIC:
+        return False
+    numbers = _numbers(model, offsets, start, size)
     motion, bodies = read_motion(model, data, offsets, 0), read_bodies(model, offsets)
     loads = read_plate_loads(data, offsets, int(numbers[PLATE_SHAPE_COUNT]))
     user, sums = motion.user, np.zeros((len(bodies.parent), SUMS))
@@ -451,7 +468,7 @@ def has_misfit(model: int, offsets: np.ndarray) -> bool:
     if magic != SHAPE_MAGIC and magic != PLATE_MAGIC:
         return False
     words = carray(model, (4096,), np.int64)
-    numbers = carray(pointer(words[offsets[memory.NUMERIC] // 8] + 8 * start), (size,), np.float64)
+    numbers = _numbers(model, offsets, start, size)
     if magic == PLATE_MAGIC:
         return words[offsets[memory.NUSER] // 8] < room_for_loads(numbers)
     bodies = words[offsets[memory.NBODY] // 8]

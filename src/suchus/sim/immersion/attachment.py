@@ -8,8 +8,12 @@ from suchus.core.water_table import NUMBERS, pack_table
 
 NUMERIC = "water"
 """Name of the custom number that holds the table, see ``core.water_table``."""
-PLUGIN = "suchus.swimming.water"
-"""Name of MuJoCo's plugin that lets the water act; ``immersion.wetting`` registers it."""
+WATER_ON_PIECES = "suchus.swimming.pieces"
+"""Name of MuJoCo's plugin that lets water act on a robot's pieces; ``immersion.wetting`` registers it."""
+WATER_ON_SHAPES = "suchus.swimming.water"
+"""Name of the plugin that lets water act on the geoms of any model."""
+GRAINS_ON_PLATES = "suchus.swimming.grains"
+"""Name of the plugin that lets grains act on plates."""
 
 
 def with_pieces(
@@ -31,22 +35,23 @@ def with_pieces(
         acting: whether the water acts in it; ``wetting.install`` goes before.
         extra_numbers: numbers for the added mass of water that is solved elsewhere.
     """
-    attach_table(spec, pack_table(table, length, max_pieces), NUMBERS + extra_numbers, acting=acting)
+    plugin = WATER_ON_PIECES if acting else None
+    attach_table(spec, pack_table(table, length, max_pieces), NUMBERS + extra_numbers, plugin)
     return spec.compile()
 
 
-def attach_table(spec: Any, numbers: np.ndarray, user_numbers: int, *, acting: bool) -> None:
+def attach_table(spec: Any, numbers: np.ndarray, user_numbers: int, plugin: str | None) -> None:
     """Let a ``mujoco.MjSpec`` carry a table.
 
     Args:
         spec: MuJoCo specification of any bodies.
         numbers: the table as a row of numbers, shape (n,).
         user_numbers: numbers of user data that the table needs [-].
-        acting: whether what it says acts; ``wetting.install`` goes before.
+        plugin: the plugin by which what it says acts, which ``wetting.install`` has registered; None: it does not act.
     """
     numeric = spec.add_numeric(name=NUMERIC, size=len(numbers))
     numeric.data = numbers
     spec.nuserdata = user_numbers
-    if acting:
-        spec.activate_plugin(PLUGIN)
-        spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)
+    if plugin is not None:
+        spec.activate_plugin(plugin)
+        spec.add_plugin(name=NUMERIC, plugin_name=plugin, active=True)

@@ -15,7 +15,7 @@ from suchus.core.checks import Checks, Schedule
 from suchus.core.errors import InvalidDesign, UnreadableFile, UnsuitedRobot
 from suchus.core.water_table import LOAD_WIDTH, NUMBERS, SHAPE_MAGIC
 from suchus.sim.immersion import wetting
-from suchus.sim.immersion.attachment import NUMERIC, PLUGIN
+from suchus.sim.immersion.attachment import NUMERIC, WATER_ON_SHAPES
 from suchus.sim.immersion.coefficients import GeomCoefficients
 from suchus.sim.immersion.sea import DEEPEST, Current, Wave, level_axes, wave_rows
 from suchus.sim.immersion.shapes import shape_table, wet_geoms
@@ -128,7 +128,7 @@ def wet(
         added_mass=added_mass, splash=splash, lift=lift, gravity=(float(pull[0]), float(pull[1]), float(pull[2])),
     )  # fmt: skip
     _check_options(spec)
-    wetting.install()
+    wetting.install(WATER_ON_SHAPES)
     model = with_full_matrix(spec)
     geoms = wet_geoms(model, coefficients, dry)
     table, triangles = shape_table(model, geoms, coefficients, viscosity, lift)
@@ -137,8 +137,8 @@ def wet(
     numeric = spec.add_numeric(name=NUMERIC, size=len(numbers))
     numeric.data = numbers
     spec.nuserdata = start + NUMBERS + LOAD_WIDTH * int(model.nbody)
-    spec.activate_plugin(PLUGIN)
-    spec.add_plugin(name=NUMERIC, plugin_name=PLUGIN, active=True)
+    spec.activate_plugin(WATER_ON_SHAPES)
+    spec.add_plugin(name=NUMERIC, plugin_name=WATER_ON_SHAPES, active=True)
     return spec
 
 

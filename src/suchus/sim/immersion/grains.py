@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import leggauss
 from suchus.core.errors import InvalidDesign
 from suchus.core.plate_table import pack_plates, user_numbers
 from suchus.sim.immersion import wetting
-from suchus.sim.immersion.attachment import attach_table
+from suchus.sim.immersion.attachment import GRAINS_ON_PLATES, attach_table
 from suchus.sim.immersion.door import with_full_matrix
 
 _AROUND = 12
@@ -53,14 +53,14 @@ def attach_grains(spec: Any, strength: float, creep_speed: float) -> None:
     Raises:
         InvalidDesign: MuJoCo cannot compile it, or a geom is neither ball, capsule nor ellipsoid.
     """
-    wetting.install()
+    wetting.install(GRAINS_ON_PLATES)
     model = with_full_matrix(spec)
     geoms = grained_geoms(model)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     surfaces = [_exposed(model, data, geom, geoms) for geom in geoms]
     numbers = pack_plates(model.geom_bodyid[list(geoms)].astype(float), surfaces, strength, creep_speed)
-    attach_table(spec, numbers, user_numbers(len(geoms)), acting=True)
+    attach_table(spec, numbers, user_numbers(len(geoms)), GRAINS_ON_PLATES)
 
 
 def plates_of(kind: int, size: Sequence[float]) -> Float[np.ndarray, "plate 7"]:

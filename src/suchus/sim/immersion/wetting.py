@@ -1,12 +1,13 @@
-"""Water inside the physics step: a plugin of passive forces, registered once in a process, where a run has water.
+"""Water inside the physics step: plugins of passive forces, each registered once in a process, where a run needs it.
 
-MuJoCo calls it at every evaluation of the passive forces of a model that names it, on whatever thread, without Python's
-lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
-positions and velocities twice in a step. The kernel (``hydro.kernel``) is kept on disk; the thin function around it is
-not, since it freezes what it refers to, the offsets of this MuJoCo among it.
+MuJoCo calls one at every evaluation of the passive forces of a model that names it, on whatever thread, without
+Python's lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
+positions and velocities twice in a step. The kernels (``hydro.kernel``) are kept on disk; the thin functions around
+them are not, since they freeze what they refer to, the offsets of this MuJoCo among it.
 """
 
 import ctypes
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from threading import Lock
@@ -19,27 +20,38 @@ from numba import cfunc, types
 
 from suchus.core.errors import OtherMuJoCo
 from suchus.core.water_table import AIR_FRACTION, BALL, DENSITY, LEVEL, SUBMERGED_VOLUME, WIDTH, column
-from suchus.sim.hydro.kernel import apply_water, has_misfit
+from suchus.sim.hydro.kernel import apply_to_pieces, apply_to_plates, apply_to_shapes, has_misfit
 from suchus.sim.hydro.memory import DATA_FIELDS, FIELDS
-from suchus.sim.immersion.attachment import PLUGIN, with_pieces
+from suchus.sim.immersion.attachment import GRAINS_ON_PLATES, WATER_ON_PIECES, WATER_ON_SHAPES, with_pieces
 from suchus.sim.immersion.structs import offset, plugin_struct, verify
 
 _WORDS = {"opt.integrator": 4}
 """Size of the words as which the kernel reads fields, where it is not 8 [byte]."""
 _FACTOR, _DEFAULT, _REGISTER = "mj_factorM", "mjp_defaultPlugin", "mjp_registerPlugin"
-_plugin_objects: list[Any] = []
+_KERNELS: Mapping[str, Callable[[int, int, np.ndarray], bool]] = {
+    WATER_ON_PIECES: apply_to_pieces,
+    WATER_ON_SHAPES: apply_to_shapes,
+    GRAINS_ON_PLATES: apply_to_plates,
+}
+"""The kernel of each plugin; a new machine compiles those alone that are installed."""
+_plugin_objects: dict[str, list[Any]] = {}
 _lock = Lock()
 
 
-def install() -> None:
-    """Let water act in every simulation of this process whose model is made for it (``model.wet``, ``acting``).
+def install(plugin: str = WATER_ON_PIECES) -> None:
+    """Let water or grains act in every simulation of this process whose model names the plugin (``model.wet``).
+
+    Args:
+        plugin: name of the plugin, see ``immersion.attachment``. That of pieces, with which is checked that it acts, is
+            installed with any.
 
     Raises:
         OtherMuJoCo: what the kernel needs is not where MuJoCo's own description says.
     """
     with _lock:
-        if not _plugin_objects:
-            _plugin_objects.append(_register(offsets()))
+        for name in (WATER_ON_PIECES, plugin):
+            if name not in _plugin_objects:
+                _plugin_objects[name] = _register(name, _KERNELS[name], offsets())
         _check_that_it_acts()
 
 
@@ -66,15 +78,21 @@ def offsets() -> np.ndarray:
     return positions
 
 
-def _register(field_offsets: np.ndarray) -> list[Any]:
-    """Compile the functions of the plugin, register it, and return what must stay in memory."""
+def _register(name: str, apply: Callable[[int, int, np.ndarray], bool], field_offsets: np.ndarray) -> list[Any]:
+    """Compile the functions of a plugin, register it, and return what must stay in memory.
+
+    Args:
+        name: name of the plugin.
+        apply: its kernel.
+        field_offsets: where the fields lie that it needs [byte].
+    """
     library = _library()
     binding.add_symbol(f"suchus_{_FACTOR}", _address(library, _FACTOR))
     pair, number = (types.voidptr, types.voidptr), types.int32
     factor = types.ExternalFunction(f"suchus_{_FACTOR}", types.void(*pair))
 
     def act(model: Any, data: Any, _instance: int, _capability: int) -> None:
-        if apply_water(model, data, field_offsets):
+        if apply(model, data, field_offsets):
             factor(model, data)
 
     def no_state(_model: Any, _instance: int) -> int:
@@ -93,13 +111,13 @@ def _register(field_offsets: np.ndarray) -> list[Any]:
         "reset": cfunc(types.void(*pair, types.voidptr, number), nopython=True)(reset),
     }
     plugin = plugin_struct()()
-    for name in (_DEFAULT, _REGISTER):
-        _address(library, name)
+    for function_name in (_DEFAULT, _REGISTER):
+        _address(library, function_name)
     getattr(library, _DEFAULT)(ctypes.byref(plugin))
-    plugin.name = PLUGIN.encode()
+    plugin.name = name.encode()
     plugin.capabilityflags = int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE)
-    for name, function in functions.items():
-        setattr(plugin, name, function.address)
+    for member, function in functions.items():
+        setattr(plugin, member, function.address)
     getattr(library, _REGISTER)(ctypes.byref(plugin))
     return [functions, plugin, field_offsets]
 

@@ -4,6 +4,7 @@ from suchus.robot.design.ground import ARENAS, Grains, Ground
 from suchus.sim.fault import Fault
 from suchus.sim.faults import Backlash, Deaf, Delayed, Frozen, Limp, Locked, LostFoot, Offset, Slow, Weak
 from suchus.sim.immersion.sea import Wave
+from suchus.sim.land.ending import EndRule
 from suchus.sim.land.failed import FAILED_JOINTS, KINDS, LEGS_FAILED, angle_at, failing_joints, joint_failure
 from suchus.sim.land.lake import Lake
 from suchus.sim.land.live import Live
@@ -28,6 +29,7 @@ __all__ = [
     "Backlash",
     "Deaf",
     "Delayed",
+    "EndRule",
     "Fault",
     "Frozen",
     "Grains",

@@ -67,7 +67,7 @@ class SimulationBatch:
         """
         bodies = [(run.robot, run.ground.relief, _section_change(run), _grains(run)) for run in runs]
         has_water = any(run.lake is not None or run.solved_flow is not None for run in runs)
-        if has_water or runs[0].ground.grains is not None:
+        if has_water:
             wetting.install()
         max_pieces = max(len(pieces(run.robot)) for run in runs) if has_water else 0
         is_solved = runs[0].solved_flow is not None
@@ -422,7 +422,7 @@ class SimulationBatch:
                 self.physics.step(going, steps // calls, _CURRENT)
             except SimulationError as error:
                 for sim in error.ids:
-                    self._end(int(sim), time, self.physics.error(int(sim)))
+                    self.end(int(sim), time, self.physics.error(int(sim)))
                 going = self._going(selection)
             self._sum += self._contact_forces()
             if meter is not None:
@@ -465,7 +465,7 @@ class SimulationBatch:
                     self.physics.step(going, 1, _CURRENT)
                 except SimulationError as error:
                     for sim in error.ids:
-                        self._end(int(sim), time, self.physics.error(int(sim)))
+                        self.end(int(sim), time, self.physics.error(int(sim)))
                     going, is_all = self._going(selection), False
                 meter.record_step(period * steps + step)
                 if period == periods - 1:
@@ -488,7 +488,7 @@ class SimulationBatch:
         np.abs(self.qvel, out=self._speeds)
         fastest = self._speeds.max(axis=1)
         for sim in np.flatnonzero(self._living(selection) & ~(fastest < _TOO_FAST)):
-            self._end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
+            self.end(int(sim), time, f"a speed of {fastest[sim]:.3g} was reached")
 
     def copy(self, sims: np.ndarray, whom: np.ndarray) -> None:
         """Copy the states, readings and failures of some runs to others.
@@ -502,7 +502,7 @@ class SimulationBatch:
         self.period_means[sims], self.effort[sims] = self.period_means[whom], self.effort[whom]
         for sim, source in zip(sims, whom, strict=True):
             if not self.alive[source]:
-                self._end(int(sim), float(self.end_times[source]), self.cause[source])
+                self.end(int(sim), float(self.end_times[source]), self.cause[source])
 
     def _sense(self, is_on: bool) -> None:
         """Switch the computation of sensors on or off; the computed states are the same."""
@@ -535,7 +535,14 @@ class SimulationBatch:
         going = self._living(selection)
         return None if going.all() else np.flatnonzero(going)
 
-    def _end(self, sim: int, time: float, cause: str) -> None:
+    def end(self, sim: int, time: float, cause: str = "") -> None:
+        """Stop a run that is alive.
+
+        Args:
+            sim: the run.
+            time: when it ends [s].
+            cause: what failed; empty where nothing did.
+        """
         if self.alive[sim]:
             self.alive[sim], self.end_times[sim], self.cause[sim] = False, time, cause
 

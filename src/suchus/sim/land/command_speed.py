@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from suchus.core.errors import Doubtful
 from suchus.robot.design import layout
@@ -35,10 +35,16 @@ class CommandSpeeds:
         self.max_speeds: Float[np.ndarray, "run servo"] = np.zeros(self._limits.shape)
         """Greatest commanded speed of each servo so far [rad/s]."""
 
-    def observe(self, targets: Float[np.ndarray, "run servo"]) -> None:
-        """Take in the angles that are commanded in the next control period [rad]."""
+    def observe(self, targets: Float[np.ndarray, "run servo"], has_ended: Bool[np.ndarray, " run"]) -> None:
+        """Take in the angles that are commanded in the next control period.
+
+        Args:
+            targets: the commanded angles [rad].
+            has_ended: whether each run has ended, so that nothing counts that it is commanded.
+        """
         if self._previous is not None:
-            np.fmax(self.max_speeds, np.abs(targets - self._previous) / self._period, out=self.max_speeds)
+            speeds = np.abs(targets - self._previous) / self._period
+            np.fmax(self.max_speeds, speeds, out=self.max_speeds, where=~has_ended[:, None])
         self._previous = targets.copy()
 
     def warn(self) -> None:

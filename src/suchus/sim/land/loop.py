@@ -112,6 +112,8 @@ class Loop:
         self.clocks: Int[np.ndarray, " run"] = np.zeros(len(runs), dtype=int)
         """Number of the control period of each run since it began."""
         self._going = np.ones(len(runs), dtype=bool)
+        self.has_ended: Bool[np.ndarray, " run"] = np.zeros(len(runs), dtype=bool)
+        """Whether each run has ended without failing."""
         self._unbounded = np.isinf(servo_ranges(runs[0].robot)).any(axis=1)
         self._intended_command = Command(initial_angles, np.zeros((len(runs), 0)))
 
@@ -254,6 +256,17 @@ class Loop:
     def choose(self, going: Bool[np.ndarray, " run"]) -> None:
         """Choose which runs go on from now, whether or not they have diverged; the others wait."""
         self._going[:] = self.batch.alive[:] = going
+
+    def end(self, sims: Int[np.ndarray, " n"]) -> None:
+        """Let some runs end now that have shown what they were to show; the others go on.
+
+        Args:
+            sims: the runs.
+        """
+        for sim in sims.tolist():
+            self._deduplication.leave(sim)
+            self.batch.end(sim, self.time)
+        self.has_ended[sims] = True
 
     def exchange(self, sim: int, run: Run) -> None:
         """Give a run another robot of the same design and another ground; ``restart`` it after this.

@@ -1,10 +1,12 @@
 """Simulate a batch of runs from beginning to end, or one: physics in MuJoCo, a controller for the whole batch."""
 
 from collections.abc import Sequence
+from functools import partial
 from math import ceil, gcd
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Bool, Int
 
 from suchus.core.checks import require
 from suchus.core.errors import Diverged, InvalidDesign, out_of_memory
@@ -19,6 +21,7 @@ from suchus.robot.robots import ROBOTS
 from suchus.sim.fault import Fault, check_faults
 from suchus.sim.land.chatter_check import check_chatter
 from suchus.sim.land.command_speed import CommandSpeeds
+from suchus.sim.land.ending import EndRule
 from suchus.sim.land.extent import check_extent
 from suchus.sim.land.lake import Lake, check_lake
 from suchus.sim.land.load_check import check_loads
@@ -37,6 +40,7 @@ def simulate(
     sample_stride: int = 1,
     effort: bool = True,
     fast: bool = False,
+    ends: EndRule | None = None,
     progress: Progress = silent,
 ) -> xr.Dataset:
     """Simulate a batch of runs.
@@ -59,6 +63,8 @@ def simulate(
             pyramids, and the solver makes ten steps of projected Gauss-Seidel. With the coarse time step two cycles of
             the caiman's crawls and of the strider's tripod get within 5 % as far as in full physics, and with a control
             period as the time step within 8 %; ``bench/fast_physics.py`` measures both, and the time.
+        ends: asked after each sample which runs end with it, since what they were to show is known; None: each lasts
+            for the duration.
         progress: told the share that is done.
 
     Returns:
@@ -100,6 +106,7 @@ def simulate(
                     portion(progress, number, len(groups)),
                     has_effort=effort,
                     fast=fast,
+                    ends=None if ends is None else partial(_ended, ends, np.array(members)),
                 )
             )
         order.extend(members)
@@ -112,6 +119,21 @@ def simulate(
     check_loads(record, runs)
     check_chatter(record, runs)
     return record
+
+
+def _ended(
+    ends: EndRule, members: Int[np.ndarray, " run"], sims: Int[np.ndarray, " n"], time: float, phase: np.ndarray
+) -> Bool[np.ndarray, " n"]:
+    """Return which runs of a group end, by their numbers in the whole batch.
+
+    Args:
+        ends: says which runs end.
+        members: numbers in the batch of the runs of the group.
+        sims: runs of the group that are asked about.
+        time: time of the sample [s].
+        phase: phase of their limbs, shape (n, limb) [cycle].
+    """
+    return ends(members[sims], time, phase)
 
 
 def _even_stride(stride: int, ticks: int, start_ticks: int) -> int:
@@ -198,6 +220,7 @@ def _simulate_group(
     *,
     has_effort: bool,
     fast: bool = False,
+    ends: EndRule | None = None,
 ) -> xr.Dataset:
     """Simulate runs that share a controller and return their record; every ``stride``-th control period is sampled.
 
@@ -209,15 +232,21 @@ def _simulate_group(
         progress: called with the finished fraction.
         has_effort: whether the record holds what the servos do.
         fast: whether contacts are solved in less time and with less accuracy.
+        ends: says after each sample which runs of the group end; None: none does.
     """
     loop = Loop(runs, timestep, ticks=ticks + 1, fast=fast)
     recorder = loop.recorder(ticks // stride + 1, has_effort=has_effort)
     speeds = CommandSpeeds(runs, loop.period)
     for tick in range(ticks + 1):
         loop.decide()
-        speeds.observe(loop.intended_targets)
+        speeds.observe(loop.intended_targets, loop.has_ended)
         if tick % stride == 0:
             recorder.store(tick // stride, loop.command.phase, loop.command.targets)
+            if ends is not None:
+                going = np.flatnonzero(loop.batch.alive)
+                loop.end(going[ends(going, loop.time, loop.command.phase[going])])
+                if not loop.batch.alive.any():
+                    break
         if tick < ticks:
             is_sample = (tick + 1) % stride == 0
             need_readings = loop.feels or is_sample

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import pairwise
 from math import radians
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from suchus.core.checks import Checks
 from suchus.core.intervals import CONFIDENCE, look_confidence, planned_looks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
+from suchus.experiments.catalog.feedback.known import KnownStarts
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -76,6 +77,8 @@ _CLAIM_LAWS = ("off", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
 _CLAIM_DISTURBANCES = ("none", "locked_spine", "uphill")
 _TOLD_DISTURBANCES = (*_CLAIM_DISTURBANCES, "kick", "push", "limp_yaw")
 """Those of the claims, and those that the reasons of the verdicts and the explanation name."""
+_TOLD_LAWS = ("off", "own_load", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
+"""Those of the claims, and those that the reasons of the verdicts and the explanation name."""
 _CLAIM_MEASURES = {
     *(f"{name}{end}" for name in ("converged_cross_load", "converged_wrong_sign", "way_gain_shared", "way_shared",
       "way_isolated") for end in ("", "_low", "_high")),
@@ -86,6 +89,10 @@ _CLAIM_MEASURES = {
 """Measures of the claims; the laws and disturbances of the claims suffice for them."""
 REPORTED_ARMS = ("open", "closed", "steered")
 """Controls whose measures are reported."""
+_SINGLE_RULES: Mapping[str, tuple[str, ...]] = {
+    "none": ("limbs", "spine", "tail"), "locked_spine": ("spine",), "uphill": ("tail",),
+}  # fmt: skip
+"""Disturbances of whose walks with one rule alone something is measured, and that rule."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,6 +157,10 @@ class Feedback(Experiment):
     """Standard deviation of the noise on the sensed loads of the feet, as a fraction of the load [-]."""
     disturbances: tuple[str, ...] = DISTURBANCES
     """Names of the disturbances that are simulated; the measures of others are not known."""
+    extent: Literal["whole", "verdicts"] = "whole"
+    """How much is simulated: the whole, or what the verdicts and their reasons need. Then the law that feels the
+    trunk's torque is left out, so are single rules under disturbances in which nothing is measured of them, and a start
+    ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law goes on."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
@@ -182,10 +193,12 @@ class Feedback(Experiment):
     def for_verdicts(self) -> "Feedback":
         """Return the same question with fewer starts of the laws that are only compared, and fewer disturbances.
 
-        A judged start has six cycles: the slowest converges after 3.5 and holds for two.
+        A judged start has six cycles: the slowest converges after 3.5 and holds for two. It ends once it is known
+        whether it converges.
         """
         return replace(
             self,
+            extent="verdicts",
             compared_starts=min(self.compared_starts, 6),
             judged_cycles=min(self.judged_cycles, 6),
             disturbances=tuple(name for name in self.disturbances if name in _TOLD_DISTURBANCES),
@@ -223,7 +236,8 @@ class Feedback(Experiment):
 
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
-        starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7))
+        laws = tuple(STARTS) if self.extent == "whole" else _TOLD_LAWS
+        starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7), laws)
         disturbed = self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0), self.disturbances)
         record = xr.merge([starts, disturbed])
         return SimulationResult(record=record, replays=self._replays(pair))
@@ -319,7 +333,7 @@ class Feedback(Experiment):
         for first, end in pairwise((0, *looks)):
             stage = staged(progress, "", first / count, end / count)
             parts.append(self._simulate_starts(laws, range(first, end), self.cycles, stage)[0])
-            record = xr.concat(parts, "start", join="exact")
+            record = xr.concat(parts, "start", join="exact", data_vars="minimal")
             record["sharing_looks"] = (
                 (),
                 len(looks),
@@ -355,12 +369,15 @@ class Feedback(Experiment):
             )
             for law, i in cells
         ]
+        is_shown = np.array([i == 0 or law in _DISTANCE_LAWS for law, i in cells])
+        is_whole = self.extent == "whole"
         record = simulate(
             runs,
             duration=START + cycles * self.gait.period,
             timestep=coarse_step(self.robot),
             sample_stride=10,
             effort=False,
+            ends=None if is_whole else KnownStarts(self.gait, cycles, self.hold, is_shown=is_shown),
             progress=progress,
         )
         shape = (len(laws), len(starts), record.sizes["time"])
@@ -375,6 +392,7 @@ class Feedback(Experiment):
             {
                 "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
                 "start_way": (dims, distance, metre | {"long_name": "displacement of the centre of mass along x"}),
+                "start_cycles": ("law", np.full(len(laws), float(cycles)), {"units": "1", "long_name": "[cycle]"}),
             },
             coords={
                 "law": list(laws),
@@ -415,15 +433,22 @@ class Feedback(Experiment):
             time); where a servo pitches the tail, also its commanded pitch [rad] and its torque [N m].
         """
         arms, body_layout = self._arms, layout(self.robot)
-        runs = [self._disturbed_run(control, name) for name in names for control in arms.values()]
+        is_cell = np.array([[self._has_cell(name, arm) for arm in arms] for name in names])
+        runs = [self._disturbed_run(arms[arm], name) for name in names for arm in arms if self._has_cell(name, arm)]
         duration = self._disturbance_time + self.after * self.gait.period
         record = simulate(
             runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, effort=False, progress=progress
         )
-        dims, shape = ("disturbance", "arm", "time"), (len(names), len(arms), record.sizes["time"])
-        track = record.centre_of_mass.transpose("run", "time", "xyz").values
+        dims = ("disturbance", "arm", "time")
+
+        def gathered(quantity: np.ndarray) -> np.ndarray:
+            """Return a quantity of all runs by disturbance and arm, NaN of the cells without a run."""
+            values = np.full((*is_cell.shape, *quantity.shape[1:]), np.nan)
+            values[is_cell] = quantity
+            return values
+
+        track = gathered(record.centre_of_mass.transpose("run", "time", "xyz").values)
         phase = record.limb_phase.transpose("run", "time", "leg").values
-        headings = heading(record).transpose("run", "time").values
         trunk_bend = (
             record.servo_angle.isel(servo=list(body_layout.trunk_yaw)).sum("servo").transpose("run", "time").values
         )
@@ -432,15 +457,15 @@ class Feedback(Experiment):
         missing_bend = commanded_motion.bend_of("trunk", commanded_motion.axis_phase(phase)) - trunk_bend
         data = xr.Dataset(
             {
-                "x": (dims, track[..., 0].reshape(shape), {"units": "m", "long_name": "distance forward"}),
-                "y": (dims, track[..., 1].reshape(shape), {"units": "m", "long_name": "distance to the left"}),
-                "heading": (dims, headings.reshape(shape), {"units": "rad", "long_name": "direction of the body"}),
-                "lacking": (
+                "x": (dims, track[..., 0], {"units": "m", "long_name": "distance forward"}),
+                "y": (dims, track[..., 1], {"units": "m", "long_name": "distance to the left"}),
+                "heading": (
                     dims,
-                    missing_bend.reshape(shape),
-                    {"units": "rad", "long_name": "bend missing in the trunk"},
+                    gathered(heading(record).transpose("run", "time").values),
+                    {"units": "rad", "long_name": "direction of the body"},
                 ),
-                "limb_phase": ((*dims, "leg"), phase.reshape(*shape, -1), {"units": "1", "long_name": "[cycle]"}),
+                "lacking": (dims, gathered(missing_bend), {"units": "rad", "long_name": "bend missing in the trunk"}),
+                "limb_phase": ((*dims, "leg"), gathered(phase), {"units": "1", "long_name": "[cycle]"}),
             },
             coords={
                 "disturbance": list(names),
@@ -452,12 +477,16 @@ class Feedback(Experiment):
         if "tail" in arms:
             tail_servo = body_layout.tail_pitch[0]
             pitch, torque = (
-                quantity.isel(servo=tail_servo).transpose("run", "time").values.reshape(shape)
+                gathered(quantity.isel(servo=tail_servo).transpose("run", "time").values)
                 for quantity in (record.servo_target, record.servo_torque)
             )
             data["tail_pitch"] = (dims, pitch, {"units": "rad", "long_name": "commanded, down positive"})
             data["tail_load"] = (dims, torque, {"units": "N m", "long_name": "on the tail's pitch servo"})
         return data.reindex(disturbance=list(DISTURBANCES))
+
+    def _has_cell(self, name: str, arm: str) -> bool:
+        """Return whether a control walks under a disturbance."""
+        return self.extent == "whole" or arm in (*REPORTED_ARMS, *_SINGLE_RULES.get(name, ()))
 
     def _disturbed_run(self, control: Coordinated, name: str) -> Run:
         """Return the run of a control under a disturbance.
@@ -545,9 +574,10 @@ def start_measures(record: xr.Dataset, gait: Gait, hold: float) -> Measures:
         measures |= estimated_fraction(
             f"converged_{law}", np.isfinite(convergence_cycles), confidence=_confidence(record, law)
         )
-        measures[f"phase_error_{law}"] = Measure(float(_last_seconds(error, hold * period).mean()), "-")
+        last_errors = error.where(error.time >= _end_times(error) - hold * period - 1e-9)
+        measures[f"phase_error_{law}"] = Measure(float(last_errors.mean()), "-")
         if law in ("own_load", "cross_load", "body_limb", "closed_noisy"):
-            cycles = (float(error.time[-1]) - START) / period
+            cycles = float(record.start_cycles.sel(law=law))
             upper_quantile = np.quantile(np.minimum(convergence_cycles, cycles), 0.9)
             measures[f"cycles_to_converge_{law}"] = Measure(float(upper_quantile), "-")
     measures["cycles_to_converge"] = measures.pop("cycles_to_converge_cross_load")
@@ -684,6 +714,11 @@ def _undisturbed_measures(record: xr.Dataset, gait: Gait) -> Measures:
         "tail_pitch_level": Measure(float(pitch.sel(disturbance="none")), "rad"),
         "tail_pitch_uphill": Measure(float(pitch.sel(disturbance="uphill")), "rad"),
     }
+
+
+def _end_times(error: xr.DataArray) -> xr.DataArray:
+    """Return the time of the last sample of each start [s]; starts whose answer is known end before others."""
+    return error.time.where(error.notnull()).max("time")
 
 
 def _last_seconds(values: xr.DataArray, seconds: float) -> xr.DataArray:
