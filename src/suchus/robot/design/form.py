@@ -54,7 +54,7 @@ def formed(table: Float[np.ndarray, "piece column"], form: BodyForm) -> Float[np
     column(result, "end")[last] += form.base_drag * np.pi * half[last, 0] * half[last, 1]
     _shed(result, last, form)
     first = last + 1
-    for foot in np.flatnonzero(table[:, 1] == BALL):  # of each limb the foot is the last piece
+    for foot in np.flatnonzero(table[:, 1] == BALL).tolist():  # of each limb the foot is the last piece
         column(result, "end")[first] += form.limb_drag * np.pi * half[first:foot, 0].max() ** 2
         first = foot + 1
     return result

@@ -1,9 +1,9 @@
 """Water inside the physics step: plugins of passive forces, each registered once in a process, where a run needs it.
 
 MuJoCo calls one at every evaluation of the passive forces of a model that names it, on whatever thread, without
-Python's lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one computes
-positions and velocities twice in a step. The kernels (``hydro.kernel``) are kept on disk; the thin functions around
-them are not, since they freeze what they refer to, the offsets of this MuJoCo among it.
+Python's lock. It is no callback (``mjcb_passive``): that acts in every model, and a batch whose process has one
+computes positions and velocities twice in a step. The kernels (``hydro.kernel``) are kept on disk; the thin functions
+around them are not, since they freeze what they refer to, the offsets of this MuJoCo among it.
 """
 
 import ctypes
