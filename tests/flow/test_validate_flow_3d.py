@@ -434,7 +434,7 @@ def test_the_box_around_the_swimming_robot(monkeypatch):
 
     In both it lies alike between the nodes: half a cell farther along, in a box of the same size, it is 0.7 % slower.
     """
-    swim, sizes, found = Swim3d(), ("AHEAD", "BEHIND", "BESIDE", "ABOVE"), {}
+    swim, sizes, found = Swim3d(), ("MARGIN_AHEAD", "MARGIN_BEHIND", "MARGIN_BESIDE", "MARGIN_ABOVE"), {}
     motion, asked = swim._motion(-1), SwimSetting(axes=3, cells=64, viscosity=swim.viscosity, cycles=4)
     default = tuple(getattr(setting, name) for name in sizes)
     for label, box in (("default", default), ("wide", (0.4, 0.85, 0.575, 0.4))):

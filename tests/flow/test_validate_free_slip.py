@@ -179,8 +179,8 @@ def rubbed(outline, end):
     girth = np.pi * (3 * (wide + high) - np.sqrt((3 * wide + high) * (wide + 3 * high)))
 
     class Rubbed(simulation.Simulation):
-        def _note(self, *given):
-            super()._note(*given)
+        def _note(self, *given, **named):
+            super()._note(*given, **named)
             for swimmer in self.swimmers.values():
                 speed = np.full(girth.shape, max(abs(swimmer.rate[0]), 1e-6))
                 band = along_stations(outline.s, girth, speed, viscosity=1e-6, density=self.setup.density)

@@ -258,11 +258,11 @@ def course_of(times, states):
 
 def followed(swim, duration):
     """Swim, and return times and postures after each step, those at the start first."""
-    times, states = [0.0], [swim.path.at(0.0)]
+    times, states = [0.0], [swim.path.posture_at(0.0)]
 
     def watch(one):
         times.append(one.time)
-        states.append(one.path.at(one.time))
+        states.append(one.path.posture_at(one.time))
 
     swim.go(duration, progress=silent, watch=watch)
     return np.array(times), states
@@ -271,13 +271,13 @@ def followed(swim, duration):
 def roots_apart(swim, times, states, force=None):
     """By how much the root's ways of a swim and of a body with its joints' course differ, over the largest [-]."""
     name, found = swim.run.robot.name, []
-    sim = beside(swim, states[0].place, course_of(times, states), force)
+    sim = beside(swim, states[0].position, course_of(times, states), force)
     for dt in np.diff(times):
         sim.advance(float(dt))
         pose = sim.pose(name)
         found.append([*pose.position[:2], pose.angle])
-    ours = np.array([one.place[:3] for one in states[1:]])
-    start = states[0].place[:3]
+    ours = np.array([one.position[:3] for one in states[1:]])
+    start = states[0].position[:3]
     moved = np.abs(ours - start).max(axis=0)
     return np.abs(ours - np.array(found)).max(axis=0) / np.array([moved[:2].max(), moved[:2].max(), moved[2]]), moved
 
@@ -300,7 +300,7 @@ def test_joints_that_are_held_straight_make_one_free_body():
     push = Push(link=robot.axis[0].name, force=(0.0, 6.0), at=0.06, duration=0.2)
     swim = Swim(pushed_run(robot, push), 0.5, thread_count=1)
     times, states = followed(swim, 0.5)
-    bent = max(float(np.abs(one.place[3:]).max()) for one in states)
+    bent = max(float(np.abs(one.position[3:]).max()) for one in states)
     links, straight = Links(swim), np.zeros(swim.chain.size)
     centre = links.places(straight)[0]
     away = centre[:, links.number(push.link)] - centre @ links.mass / links.mass.sum()
@@ -358,8 +358,8 @@ def test_joints_without_stiffness_are_hinges_of_free_links():
     times, states = followed(swim, 0.3)
     other = FreeLinks(Swim(run, 0.3, thread_count=1), push)
     found = [other.step(float(dt)) for dt in np.diff(times)]
-    ours, theirs = (np.array([one.place for one in rows]) for rows in (states[1:], found))
-    ours, theirs = ours - states[0].place, theirs - states[0].place
+    ours, theirs = (np.array([one.position for one in rows]) for rows in (states[1:], found))
+    ours, theirs = ours - states[0].position, theirs - states[0].position
     apart, most = np.abs(ours - theirs).max(axis=0), np.abs(theirs).max(axis=0)
     case, shared = "robot without stiffness in its joints, pushed at its head", (
         "48 cells/L", "moving with it", "rigid links at free hinges, each step again until Newton's law holds to 1e-5",
