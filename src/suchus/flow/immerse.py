@@ -37,6 +37,9 @@ from suchus.flow.slab import (
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
 
+WINDOW_MARGIN = REACH + 2
+"""Distance of the window's sides from the bodies [cells]."""
+
 POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 
