@@ -171,7 +171,7 @@ def test_domain():
 def test_cylinder_re100():
     """The sides are those of unbounded water, so the source is one in a domain 120 diameters high: the lift in narrow
     ones, 0.339 of Liu et al. 1998, is larger."""
-    sim, record, f = cases.cylinder(16, 100, x=(-8, 16), y=(-8, 8), until=80.0, kick=1.0, control=1.0)
+    sim, record, f = cases.cylinder(24, 100, x=(-8, 16), y=(-8, 8), until=80.0, kick=1.0, control=1.0)
     cd, rms, st, unsteady = periodic(record, f)
     k = signals.last_periods(record.time, f[:, 1], 5)
     box = np.average(2 * sim.control_forces[k, 0], weights=record.step[k])

@@ -128,8 +128,8 @@ def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]
     )
     return InvalidDesign(
         f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the grid {domain} "
-        f"(less {WINDOW_MARGIN * grid.cell:.2g} m on each open side); enlarge the grid, let it follow the body, or make "
-        f"the side a Wall() or a Slip(), to which a body may come near."
+        f"(less {WINDOW_MARGIN * grid.cell:.2g} m on each open side); enlarge the grid, let it follow the body, or "
+        f"make the side a Wall() or a Slip(), to which a body may come near."
     )
 
 
