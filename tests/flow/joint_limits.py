@@ -117,7 +117,7 @@ class FreeLinks:
     def __init__(self, swim, push):
         self.swim, self.links, self.push = swim, Links(swim), push
         self.depth = swim.depth
-        self.state = swim.path.at(0.0)
+        self.state = swim.path.posture_at(0.0)
         self.more = np.zeros(swim.chain.size)
         self.retries, self.force, self.left = 0, np.zeros(swim.chain.size), 0.0
 
