@@ -50,7 +50,7 @@ class Links:
         self._joints = joint_addresses(model, swim.chain.joints)
         self.bodies = [k for k in range(1, model.nbody) if model.body_mass[k] > 0.0]
         self.mass = model.body_mass[self.bodies]
-        self._start = swim.chain.seen(np.zeros(swim.chain.size), np.zeros(swim.chain.size)).place[:2]
+        self._start = swim.chain.flow_state(np.zeros(swim.chain.size), np.zeros(swim.chain.size)).position[:2]
 
     def number(self, name):
         """Which link has a name."""
@@ -117,7 +117,7 @@ class FreeLinks:
     def __init__(self, swim, push):
         self.swim, self.links, self.push = swim, Links(swim), push
         self.depth = swim.depth
-        self.state = swim.path.at(0.0)
+        self.state = swim.path.posture_at(0.0)
         self.more = np.zeros(swim.chain.size)
         self.retries, self.force, self.left = 0, np.zeros(swim.chain.size), 0.0
 
@@ -177,8 +177,8 @@ def given_joints(swim, course):
 
     def spine(time):
         one = posture(time)
-        line = chain.midline(one.place)
-        (x, y), (u, v) = line.place, line.along @ one.rate
+        line = chain.midline(one.position)
+        (x, y), (u, v) = line.position, line.jacobian @ one.rate
         bare = flow.MidlineState(
             x=x, y=y, heading=line.heading, half_width=chain.outline.silhouette.half_width, x_rate=u, y_rate=v,
             heading_rate=line.turning @ one.rate,

@@ -91,7 +91,7 @@ def test_sources_of_a_wake_have_the_strength_of_its_defect():
     velocity[1] = 0.0
     velocity[0] -= 0.2 * np.exp(-(((y - ny / 2) / 5.0) ** 2))[:, None]
     water = farfield.OpenWater((nx, ny))
-    sides = water.inward(velocity, (PAD + 8, PAD + 16, PAD + 20, PAD + 28), [farfield.Fading(0, False, 1.0)])
+    sides = water.inward(velocity, (PAD + 8, PAD + 16, PAD + 20, PAD + 28), [farfield.Fading(0, False, 1.0, 24.0)])
     defect = 0.2 * 5.0 * np.sqrt(np.pi)
     outflow = -sum(side.sum() for side in sides)
     assert outflow == pytest.approx(defect, rel=0.05)

@@ -138,7 +138,7 @@ def test_a_wake_that_leaves_is_a_source(axis, low):
 
     velocity = on_faces(GRID, field)
     far, exact = FarField(GRID, (False,) * 6), on_faces(GRID, pole(middle, flux, (0.0, 0.0, 0.0)))
-    kept, left = (far.inward(velocity, NONE, [Fading(axis, low, share)]) for share in (0.0, 1.0))
+    kept, left = (far.inward(velocity, NONE, [Fading(axis, low, share, 8.0)]) for share in (0.0, 1.0))
     assert sum(side.sum() for side in kept) * CELL**2 == pytest.approx(0.0, abs=0.05 * flux)
     assert sum(side.sum() for side in left) * CELL**2 == pytest.approx(-flux, rel=0.05)
     for k, side in enumerate(left):

@@ -10,7 +10,7 @@ from suchus import flow
 from suchus.core.errors import Doubtful
 from suchus.flow import signals
 from suchus.flow.compiled import PAD
-from suchus.flow.farfield import Fading, OpenWater
+from suchus.flow.farfield import FADE_FRACTION, Fading, OpenWater, fade_length
 from suchus.flow.watch import Watch
 
 NO_BODY = (PAD, PAD, PAD, PAD)
@@ -78,11 +78,11 @@ def test_a_wake_that_leaves_acts_like_a_source():
         return defect * (x - 40.0) / (2 * np.pi * square), defect * (y - 64.0) / (2 * np.pi * square)
 
     u, v = fields(nx, ny, wake)
-    got = OpenWater((nx, ny)).inward((u, v), NO_BODY, [Fading(0, False, 1.0)])
+    got = OpenWater((nx, ny)).inward((u, v), NO_BODY, [Fading(0, False, 1.0, FADE_FRACTION * nx)])
     exact = inward(nx, ny, source)
     assert got[0] == pytest.approx(exact[0], abs=0.02 * np.abs(exact[0]).max())
     assert got[3][:160] == pytest.approx(exact[3][:160], abs=0.05 * np.abs(exact[3]).max())
-    turned = OpenWater((ny, nx)).inward((v.T.copy(), u.T.copy()), NO_BODY, [Fading(1, False, 1.0)])
+    turned = OpenWater((ny, nx)).inward((v.T.copy(), u.T.copy()), NO_BODY, [Fading(1, False, 1.0, FADE_FRACTION * nx)])
     assert turned[2] == pytest.approx(exact[0], abs=0.05 * np.abs(exact[0]).max())
 
 
@@ -180,6 +180,46 @@ def test_a_vortex_street_does_not_depend_on_where_the_box_ends():
     """The lift was 0.25, 0.35 and 0.29 when the wake was faded over a quarter of the domain."""
     boxes = np.array([street(end) for end in (12.0, 16.0)])
     assert boxes[0] == pytest.approx(boxes[1], rel=0.015)
+
+
+def test_a_fade_does_not_jump_with_the_cells_that_a_body_covers():
+    """A window that grew by one cell gave the force of an undulating eel a peak of a tenth of itself."""
+    body = flow.Body(shape=flow.Cylinder(diameter=1.0))
+    sim = flow.Simulation(
+        flow.Setup(
+            grid=flow.Grid.covering((-2, 6), (-2, 2), cell=1 / 8), viscosity=0.1, stream=(1.0, 0.0), bodies=(body,)
+        )
+    )
+    edge = next(e for e in sim.water.border.edges if e.axis == 0 and not e.is_lower_side)
+    at_first = (PAD + 8, PAD + 24, PAD + 8, PAD + 24)
+    wider, narrower = (PAD + 6, PAD + 26, PAD + 8, PAD + 25), (PAD + 9, PAD + 23, PAD + 8, PAD + 24)
+    lengths = []
+    for window in (at_first, narrower, *[wider] * 200, narrower):
+        edge.shorten_fade(window)
+        lengths.append(edge.fade_length)
+    ends = [fade_length(window, 0, is_lower_side=False, cells=edge.cells) for window in (at_first, wider)]
+    assert ends[1] < ends[0] - 1.0
+    assert lengths[0] == lengths[1] == ends[0]
+    assert lengths[-1] == pytest.approx(ends[1])
+    changes = -np.diff(lengths)
+    assert changes.min() >= 0.0
+    assert changes.max() < 0.1 * (ends[0] - ends[1])
+
+
+def test_a_fade_that_shortens_goes_on_from_a_snapshot_to_the_same_bytes():
+    body = flow.Body(shape=flow.eel(1.0, stations=65))
+    grid = flow.Grid.covering((-0.5, 2.0), (-0.6, 0.6), cell=1 / 32)
+    sim = flow.Simulation(flow.Setup(grid=grid, viscosity=1e-3, stream=(0.4, 0.0), bodies=(body,), coarse=True))
+    sim.run(0.3, progress=False)
+    lengths = [edge.fade_length for edge in sim.water.border.edges]
+    snapshot = sim.snapshot()
+    sim.run(0.4, progress=False)
+    assert [edge.fade_length for edge in sim.water.border.edges] != lengths
+    velocity = sim.water.velocity.copy()
+    sim.restore(snapshot)
+    assert [edge.fade_length for edge in sim.water.border.edges] == lengths
+    sim.run(0.4, progress=False)
+    assert np.array_equal(sim.water.velocity, velocity)
 
 
 def beside(gap, motion, *, stream=(0.0, 0.0), until, step=0.03):

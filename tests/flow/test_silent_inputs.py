@@ -43,6 +43,7 @@ def inflow(profile, **sides):
 
 
 REFUSED = {
+    "a stream that is a class": (lambda: simulation(stream=object), "stream is the class object; give a velocity"),
     "an end that is a text": (lambda: stream().run("3"), "until '3' s; give a finite time"),
     "no interval": (lambda: stream().run(0.1, watch=print, watch_interval=0.0), r"interval of watch is 0\.0 s"),
     "an interval below 0": (lambda: stream().run(0.1, watch=print, watch_interval=-1.0), r"interval of watch is -1\.0"),

@@ -12,7 +12,7 @@ from suchus.core.kinds import show
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import MIN_CLOSED_THICKNESS, MIN_THICKNESS, REACH
+from suchus.flow.immerse import MIN_CLOSED_THICKNESS, MIN_THICKNESS, REACH, WINDOW_MARGIN
 from suchus.flow.pose import Motion, Pose
 from suchus.flow.shape import Field, Shape
 from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape
@@ -83,7 +83,7 @@ def window_of(
             it in half.
     """
     bounds = body.shape.bounds(time, pose)
-    ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, (REACH + 2) * grid.cell
+    ends, h, margin = list(zip(bounds[::2], bounds[1::2], strict=True)), grid.cell, WINDOW_MARGIN * grid.cell
     mirrors, solids = (kinds or (False,) * (2 * grid.ndim) for kinds in (mirrors, solids))
     window = []
     for d in reversed(range(grid.ndim)):
@@ -128,8 +128,8 @@ def _out_of_grid_error(body: AnyBody, grid: Grid, ends: list[tuple[float, float]
     )
     return InvalidDesign(
         f"at t = {time:.4g} s, {body.name} reaches over {reach}, outside the grid {domain} "
-        f"(less {(REACH + 2) * grid.cell:.2g} m on each open side); enlarge the grid, let it follow the body, or make "
-        f"the side a Wall() or a Slip(), to which a body may come near."
+        f"(less {WINDOW_MARGIN * grid.cell:.2g} m on each open side); enlarge the grid, let it follow the body, or "
+        f"make the side a Wall() or a Slip(), to which a body may come near."
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 from suchus.flow.compiled import PAD, Window, compiled, kernel_part, unsigned
-from suchus.flow.farfield import Fading, FarField, OpenWater
+from suchus.flow.farfield import Fading, FarField, OpenWater, fade_length
 from suchus.flow.grid import Grid
 from suchus.flow.pose import length
 from suchus.flow.sides import NAMES, Periodic, Side, Sides, Stream
@@ -26,6 +26,14 @@ corrections of the side are relaxed [-]."""
 
 MIN_SIDE_RELAXATION = 0.5
 """Fraction of each correction that a side beside the window takes at once [-]; at ``NEAR_SIDE_RATIO`` it is 1."""
+
+MIN_FADE_CHANGE = 0.05
+"""Smallest change in a step, as long as any is needed, of the length over which a wake is faded [cells].
+
+What fades acts on the bodies at once. A length that jumps with the cells that a body covers gives their force peaks."""
+
+FADE_CHANGE_RATIO = 1 / 16
+"""The change in a step over the change that is needed, where that is more [-]."""
 
 _CHANGING = {"prescribed": "prescribed", "induced": "induced", "seen": "previous_induced"}
 """Arrays of an edge that change, by their key in a checkpoint."""
@@ -347,6 +355,8 @@ class Edge:
     """Weight of the convective outflow condition in this step; the rest of the velocity follows the far water [-]."""
     wall_velocity: tuple[float, ...] | None = None
     """Velocity of the wall along the other axes, for a side with friction; else None [m/s]."""
+    fade_length: float = 0.0
+    """Length over which a wake is faded before it leaves here; 0 before one can leave [cells]."""
     induced: np.ndarray = field(init=False)
     """Velocity into the domain that the flow inside induces on the side, at the end of the last step [m/s]."""
     previous_induced: np.ndarray = field(init=False)
@@ -406,6 +416,19 @@ class Edge:
                     f"{self.prescribed.shape}."
                 )
         return slides, inflow
+
+    def shorten_fade(self, window: Window) -> None:
+        """Shorten the length over which a wake is faded, by little in a step, where the bodies ask for a shorter one.
+
+        Args:
+            window: padded cell indices around the bodies in the plane.
+        """
+        target = fade_length(window, self.axis, is_lower_side=self.is_lower_side, cells=self.cells)
+        if self.fade_length == 0.0:
+            self.fade_length = target
+        elif target < self.fade_length:
+            change = max(MIN_FADE_CHANGE, FADE_CHANGE_RATIO * (self.fade_length - target))
+            self.fade_length = max(target, self.fade_length - change)
 
     def impose(self, time: float, outward: float) -> None:
         """Set the velocities that the side prescribes at a time.
@@ -566,13 +589,16 @@ class Border:
         edges = {
             f"edge{k}.{key}": getattr(e, name) for k, e in enumerate(self.edges) for key, name in _CHANGING.items()
         }
-        return {**edges, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.last_step])}
+        fades = {"fade_lengths": np.array([e.fade_length for e in self.edges])}
+        return {**edges, **fades, "stream": np.array(self.stream), "prepared": np.array([self.steps, self.last_step])}
 
     def resume(self, state: dict[str, np.ndarray]) -> None:
         """Set all that changes."""
         for k, edge in enumerate(self.edges):
             for key, name in _CHANGING.items():
                 getattr(edge, name)[:] = state[f"edge{k}.{key}"]
+        for edge, fade in zip(self.edges, state["fade_lengths"].tolist(), strict=True):
+            edge.fade_length = fade
         self.stream, self.side_table = tuple(state["stream"].tolist()), None
         self.steps, self.last_step = int(state["prepared"][0]), float(state["prepared"][1])
 
@@ -613,6 +639,8 @@ class Border:
         size = max(length(stream), 1e-30)
         for edge in self.edges:
             edge.impose(time, -edge.sign * stream[edge.axis] / size)
+            if edge.convective_weight and isinstance(self.water, OpenWater):
+                edge.shorten_fade(window)
         if self.steps == 0:
             self.induced[:] = self.previous_induced[:] = self._induced(velocity, window)
         growth = dt / self.last_step if self.last_step else 0.0
@@ -744,7 +772,11 @@ class Border:
         """
         if self.water is None:
             return np.zeros(self.induced.size)
-        fadings = [Fading(e.axis, e.is_lower_side, e.convective_weight) for e in self.edges if e.convective_weight]
+        fadings = [
+            Fading(e.axis, e.is_lower_side, e.convective_weight, e.fade_length)
+            for e in self.edges
+            if e.convective_weight
+        ]
         if isinstance(self.water, OpenWater):
             return self.water.inward_faces(velocity, window, fadings)
         return np.concatenate([side.ravel() for side in self.water.inward(velocity, window, fadings)])

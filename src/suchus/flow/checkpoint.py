@@ -16,7 +16,7 @@ from suchus.core.fingerprint import fingerprint
 from suchus.core.reading import check_file
 from suchus.core.writing import keep
 
-VERSION = 11
+VERSION = 12
 """Layout of the file; rises with every change of it."""
 
 MARK = b"suchus flow checkpoint %d\n" % VERSION

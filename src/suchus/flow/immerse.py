@@ -37,6 +37,12 @@ from suchus.flow.slab import (
 REACH = 3.0
 """Distance from the surface up to which normals and velocities are needed [cells]."""
 
+WINDOW_MARGIN = REACH + 2
+"""Least distance of the window's sides from the bodies [cells]."""
+
+MEAN_WINDOW_MARGIN = WINDOW_MARGIN + 1
+"""The same with the cell that the window takes on, so that it ends between cells [cells]."""
+
 POINTS = 4096
 """Points whose moments one thread fills at a time [-]."""
 

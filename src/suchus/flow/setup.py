@@ -125,6 +125,11 @@ class Setup:
             )
         if not callable(self.stream):
             self._check_stream(self.stream, "")
+        elif isinstance(self.stream, type):
+            raise InvalidDesign(
+                f"stream is the class {self.stream.__name__}; give a velocity in m/s, or a function of the time that "
+                f"returns one."
+            )
         if not (isfinite(self.perturb) and abs(self.perturb) <= 1):
             raise InvalidDesign(f"perturb is {self.perturb}; give -1 to 1, over the stream's speed, say 0.2.")
         if self.perturb and not (self.bodies and any(self.far_velocity(0.0))):

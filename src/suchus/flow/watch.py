@@ -9,7 +9,7 @@ from suchus.core.errors import Doubtful
 from suchus.flow.body import AnyBody
 from suchus.flow.compiled import PAD
 from suchus.flow.contact import WallPlane
-from suchus.flow.immerse import REACH
+from suchus.flow.immerse import MEAN_WINDOW_MARGIN
 from suchus.flow.plausibility import heading_text, implausible_inputs
 from suchus.flow.pose import length
 from suchus.flow.setup import Setup
@@ -192,7 +192,7 @@ class Watch:
         window, ndim = water.window, water.ndim
         if len(water.layers) > 1 or window[1] <= window[0]:
             return
-        margin, spin = REACH + 3, None
+        margin, spin = MEAN_WINDOW_MARGIN, None
         stream = np.array(water.border.stream)
         self._carried = self._carried + stream * (time - self._carried_time)
         self._carried_time = time
@@ -240,7 +240,7 @@ class Watch:
         if water.ndim == 3 or len(water.layers) > 1 or window[1] <= window[0] or np.count_nonzero(stream) != 1:
             return
         axis, speed = int(np.abs(stream).argmax()), length(stream)
-        margin = 2 * (REACH + 3)
+        margin = 2 * MEAN_WINDOW_MARGIN
         lengths = [window[2 * d + 1] - window[2 * d] - margin for d in (1, 0)]
         width = lengths[1 - axis]
         reynolds, travel = self._reynolds(water, width), speed * time / (width * water.grid.cell)

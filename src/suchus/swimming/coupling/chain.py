@@ -37,7 +37,7 @@ BodyState = tuple[flow.MidlineState, flow.Pose]
 
 
 class Points(NamedTuple):
-    """The midline at some arc lengths; ``along`` its derivatives by the coordinates."""
+    """The midline at some arc lengths; ``jacobian`` its derivatives by the coordinates."""
 
     position: Float[np.ndarray, "2 point"]
     """Where they are [m]."""
