@@ -13,7 +13,7 @@ from suchus.core import rotation
 from suchus.core.errors import InvalidDesign, OtherMuJoCo, OutsideLimits
 from suchus.experiments.catalog import EXPERIMENTS
 from suchus.robot.control import Swimming
-from suchus.robot.design import crocodile
+from suchus.robot.design import crocodile, with_values
 from suchus.robot.design.pieces import volumes
 from suchus.robot.design.water import Water
 from suchus.robot.motion import LIMBS_UP, straight_gait
@@ -182,6 +182,9 @@ def test_a_robot_that_sinks_is_told_by_how_much_and_one_that_floats_is_not():
     with pytest.raises(InvalidDesign, match="robot 'floating_caiman' sinks"):
         check_floats(floating, Lake(level=1.0, air_fraction=0.0))
     check_floats(caiman, Lake(level=1.0, water=Water(density=2000.0)))
+    leaden = with_values(floating, {"hull.density": 1000.0})
+    with pytest.raises(InvalidDesign, match="displaces; lighter foam, as design.flotation.float_hull makes"):
+        check_floats(leaden, Lake(level=1.0))
 
 
 @pytest.mark.parametrize("name", ["swim_free", "shore"])

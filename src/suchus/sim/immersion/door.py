@@ -21,6 +21,11 @@ from suchus.sim.immersion.sea import DEEPEST, Current, Wave, level_axes, wave_ro
 from suchus.sim.immersion.shapes import shape_table, wet_geoms
 
 _PGS = int(mujoco.mjtSolver.mjSOL_PGS)
+_NO_SPRING, _NO_DAMPER, _NO_GRAVITY = (
+    int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{word}")) for word in ("SPRING", "DAMPER", "GRAVITY")
+)
+_ROOM = "water_room"
+"""Name of the empty bodies that give the mass matrix room, before their numbers."""
 _NO_COEFFICIENTS: Mapping[str, GeomCoefficients] = {}
 
 
@@ -88,7 +93,7 @@ def wet(
     waves: Wave | Iterable[Wave] = (),
     current: Current | tuple[float, float] = (0.0, 0.0),
     coefficients: Mapping[str, GeomCoefficients] = _NO_COEFFICIENTS,
-    dry: Collection[str] = (),
+    dry: str | Collection[str] = (),
     added_mass: float = 1.0,
     splash: float = 1.0,
     lift: float = 0.0,
@@ -120,17 +125,18 @@ def wet(
         UnreadableFile: MuJoCo cannot read the file.
     """
     spec = _specification(source)
+    _check_coefficients(coefficients)
     pull = spec.option.gravity
     medium = Medium(
-        level=level, density=density, viscosity=viscosity,
-        waves=(waves,) if isinstance(waves, Wave) else tuple(waves),
+        level=_tuples(level), density=density, viscosity=viscosity,
+        waves=tuple(waves) if isinstance(waves, Iterable) else (waves,),
         current=current if isinstance(current, Current) else Current(velocity=current),
         added_mass=added_mass, splash=splash, lift=lift, gravity=(float(pull[0]), float(pull[1]), float(pull[2])),
     )  # fmt: skip
     _check_options(spec)
     wetting.install(WATER_ON_SHAPES)
     model = with_full_matrix(spec)
-    geoms = wet_geoms(model, coefficients, dry)
+    geoms = wet_geoms(model, coefficients, (dry,) if isinstance(dry, str) else dry)
     table, triangles = shape_table(model, geoms, coefficients, viscosity, lift)
     start = int(model.nuserdata)
     numbers = _numbers(medium, table, triangles, start, int(model.nbody))
@@ -208,6 +214,16 @@ def _check_options(spec: Any) -> None:
             "this model solves contacts by PGS or the noslip iterations, which take the mass matrix without the added "
             "mass of the water: set option solver to Newton or CG, and noslip_iterations to 0."
         )
+    if option.disableflags & _NO_SPRING and option.disableflags & _NO_DAMPER:
+        raise InvalidDesign(
+            "this model has no passive forces (option flags spring and damper are both disabled), and water is one: "
+            "enable one of the flags."
+        )
+    if option.disableflags & _NO_GRAVITY:
+        raise InvalidDesign(
+            "this model's gravity is off by the option flag gravity, and buoyancy would stay: enable the flag, or set "
+            "the option gravity to 0 0 0."
+        )
     if option.enableflags & int(mujoco.mjtEnableBit.mjENBL_SLEEP):
         raise InvalidDesign("this model lets bodies sleep (option flag sleep), and water wakes none: disable the flag.")
 
@@ -216,21 +232,70 @@ def with_full_matrix(spec: Any) -> Any:
     """Compile a specification so that the mass matrix has room for the added mass of each body; return the model.
 
     MuJoCo keeps a diagonal matrix for a body whose frame is that of its mass, unless it has a child: such a body gets
-    an empty one.
+    an empty one, which an exclusion from contacts keeps from being fused with it (compiler option ``fusestatic``).
+
+    Raises:
+        InvalidDesign: MuJoCo cannot compile it, or empty bodies would not stay without mass.
+    """
+    model = _compiled(spec)
+    has_room = (model.body_simple == 0) | (model.body_dofnum == 0) | (model.body_geomnum == 0)
+    crowded = [body for body in spec.bodies if not has_room[body.id]]
+    if not crowded:
+        return model
+    _check_empty_bodies(spec)
+    for i, body in enumerate(crowded):
+        room = f"{_ROOM}_{i}"
+        body.add_body(name=room)
+        spec.add_exclude(bodyname1=room, bodyname2="world")
+    return _compiled(spec)
+
+
+def _compiled(spec: Any) -> Any:
+    """Return the model of a specification.
 
     Raises:
         InvalidDesign: MuJoCo cannot compile it.
     """
     try:
-        model = spec.compile()
-        simple = {int(i) for i in np.flatnonzero(model.body_simple) if model.body_dofnum[i] > 0}
-        if simple:
-            for body in [body for body in spec.bodies if body.id in simple]:
-                body.add_body()
-            model = spec.compile()
+        return spec.compile()
     except ValueError as error:
         raise InvalidDesign(f"MuJoCo cannot compile this model: {error}") from error
-    return model
+
+
+def _check_empty_bodies(spec: Any) -> None:
+    """Refuse a specification whose compiler gives empty bodies a mass.
+
+    Raises:
+        InvalidDesign: it does.
+    """
+    compiler = spec.compiler
+    if compiler.boundmass > 0.0 or compiler.boundinertia > 0.0:
+        raise InvalidDesign(
+            f"this model gives every body a least mass (compiler boundmass {compiler.boundmass:g}, boundinertia "
+            f"{compiler.boundinertia:g}), those too that make room for added mass: give its bodies their masses, and "
+            "set both to 0."
+        )
+
+
+def _check_coefficients(coefficients: Any) -> None:
+    """Refuse what is no mapping of names to coefficients.
+
+    Raises:
+        InvalidDesign: it is none.
+    """
+    is_mapping = isinstance(coefficients, Mapping)
+    if not is_mapping or not all(isinstance(value, GeomCoefficients) for value in coefficients.values()):
+        raise InvalidDesign(
+            f"coefficients is {coefficients!r}; names of geoms with their coefficients are needed, as "
+            "{'fin': GeomCoefficients(drag=1.5)}."
+        )
+
+
+def _tuples(level: Any) -> Any:
+    """Return lists and arrays of pairs of time and level as tuples, and anything else as it is."""
+    pairs = level.tolist() if isinstance(level, np.ndarray) else level
+    is_pairs = isinstance(pairs, (list, tuple)) and all(isinstance(pair, (list, tuple)) for pair in pairs)
+    return tuple(tuple(pair) for pair in pairs) if is_pairs else pairs
 
 
 def _numbers(

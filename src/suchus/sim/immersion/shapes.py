@@ -48,7 +48,7 @@ def wet_geoms(model: Any, coefficients: Mapping[str, GeomCoefficients], dry: Col
             raise UnknownName("geom", name, filter(None, names))
     for name in dry:
         if name not in (*names, *bodies) or not name:
-            raise UnknownName("geom or body", name, filter(None, (*names, *bodies)))
+            raise UnknownName("geom or body", name, filter(None, dict.fromkeys((*names, *bodies))))
     collides = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     chosen = []
     for i, name in enumerate(names):

@@ -3,6 +3,7 @@
 import warnings
 from functools import lru_cache
 from math import isnan
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -22,13 +23,26 @@ from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.sim.model.wet import wet_model
 
 HEAVIER = 1e-3
-"""Share of its mass by which a swimmer may be heavier than its water; the water holds one that swims so slowly down."""
+"""Share of its mass by which a body that hovers may differ from its water [-]; the water holds one that swims so slowly
+down."""
 INDIFFERENT = 1e-4
 """Metacentric height over length down to which a body is not said to capsize, if it is below zero [-]."""
 AIRBORNE = 0.15
 """Share of the volume in the air from which a swimmer is told so: limbs and tail then beat the air [-]."""
 _EMERGED_FRACTION, _BALLAST_FRACTION = 0.05, 0.1
 """Share of the volume that is above the surface once it is mended, and of the mass that is moved to mend it [-]."""
+
+
+def buoyancy(surplus_mass: float, mass: float) -> Literal["floats", "hovers", "sinks"]:
+    """Return what a body does in water; it hovers where it is as heavy as the water that it displaces, to ``HEAVIER``.
+
+    Args:
+        surplus_mass: mass by which it is heavier than the water that it displaces wholly under water [kg].
+        mass: [kg].
+    """
+    if abs(surplus_mass) <= HEAVIER * mass:
+        return "hovers"
+    return "sinks" if surplus_mass > 0.0 else "floats"
 
 
 def capacity(robot: Robot, lake: Lake) -> tuple[float, float]:
@@ -91,7 +105,7 @@ def check_afloat(robot: Robot, lake: Lake, posture: Float[np.ndarray, " servo"])
 def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[float, ...]) -> str:
     """Return a warning about a swimmer at rest as a sentence; empty if it floats upright and deep enough."""
     equilibrium = hydrostatics(robot, np.array(posture), density=density, air_fraction=air_fraction, heel_count=3)
-    if equilibrium.surplus_mass > HEAVIER * equilibrium.mass:
+    if buoyancy(equilibrium.surplus_mass, equilibrium.mass) == "sinks":
         return _sinking_message(robot, density, equilibrium.surplus_mass)
     emerged_fraction = 1.0 - equilibrium.mass / (density * equilibrium.volume)
     lever = -equilibrium.metacentric_height
@@ -103,7 +117,7 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
     if lever > INDIFFERENT * robot.length:
         return (
             f"robot {robot.name!r} capsizes: upright its metacentric height is {-1e3 * lever:.3g} mm; lower more than "
-            f"{_grams(_BALLAST_FRACTION * equilibrium.mass)} of its mass by "
+            f"{mass_text(_BALLAST_FRACTION * equilibrium.mass)} of its mass by "
             f"{1e3 * lever / _BALLAST_FRACTION:.3g} mm, or give its back foam."
         )
     if emerged_fraction >= AIRBORNE:
@@ -111,7 +125,7 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
         spare = equilibrium.volume - equilibrium.mass / ((1.0 - _EMERGED_FRACTION) * density)
         return (
             f"robot {robot.name!r} floats with {emerged_fraction:.0%} of its volume in the air, where it moves no "
-            f"water; {_grams(lacking)} more mass, or {_litres(spare)} less foam, air or other volume, leaves "
+            f"water; {mass_text(lacking)} more mass, or {volume_text(spare)} less foam, air or other volume, leaves "
             f"{_EMERGED_FRACTION:.0%} above."
         )
     return ""
@@ -120,20 +134,23 @@ def _doubt(robot: Robot, density: float, air_fraction: float, posture: tuple[flo
 def _sinking_message(robot: Robot, density: float, excess_mass: float) -> str:
     """Return the sentence on a robot that is too heavy by a mass [kg], in water of a density [kg/m3]."""
     foam_density = (robot.hull or Hull(foam=())).density
-    foam_text = f"{_litres(excess_mass / (density - foam_density))} of foam" if foam_density < density else "lighter "
-    "foam"
+    foam_text = "lighter foam"
+    if foam_density < density:
+        foam_text = f"at least {volume_text(excess_mass / (density - foam_density))} of foam more"
     return (
-        f"robot {robot.name!r} sinks: it is {_grams(excess_mass)} heavier than the water that it displaces; at least "
-        f"{foam_text} more, as design.flotation.float_hull makes, {_litres(excess_mass / density)} more air, or "
-        f"{_grams(excess_mass)} less mass would carry it."
+        f"robot {robot.name!r} sinks: it is {mass_text(excess_mass)} heavier than the water that it displaces; "
+        f"{foam_text}, as design.flotation.float_hull makes, {volume_text(excess_mass / density)} more air, or "
+        f"{mass_text(excess_mass)} less mass would carry it."
     )
 
 
-def _grams(mass: float) -> str:
+def mass_text(mass: float) -> str:
+    """Return a mass [kg] in words, in kilograms or grams."""
     return f"{mass:.3g} kg" if mass >= 1.0 else f"{1e3 * mass:.3g} g"
 
 
-def _litres(volume: float) -> str:
+def volume_text(volume: float) -> str:
+    """Return a volume [m3] in words, in litres or millilitres."""
     return f"{1e3 * volume:.3g} l" if volume >= 1e-4 else f"{1e6 * volume:.3g} ml"
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import nan, pi, radians
+from math import nan, pi, radians, tau
 from typing import Any, ClassVar
 
 import numpy as np
@@ -30,7 +30,7 @@ from suchus.robot.design.scale import control_period
 from suchus.robot.motion import LIMBS_UP, cycle_targets, straight_gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Lake, Run, simulate
-from suchus.sim.land.afloat import INDIFFERENT
+from suchus.sim.land.afloat import HEAVIER, INDIFFERENT, buoyancy, floats, mass_text, volume_text
 from suchus.sim.model.hydrostatics import hydrostatics
 from suchus.visual.figures.style import COLOURS, captioned, panels, styled
 
@@ -46,8 +46,8 @@ class Floating(Experiment):
 
     The drafts of sphere, cylinder and box have closed forms. A released box heaves at a known period and conserves its
     energy. A spheroid in ideal water conserves its momentum. Submerged volumes are compared with counted points. The
-    robot lies still with its limbs held out and is released at the surface from several angles of heel. Its righting
-    lever, with trim and draft free, is drawn over the heel.
+    robot lies still with its limbs held out and, if it floats, is released at the surface from several angles of heel.
+    Its righting lever, with trim and draft free, is drawn over the heel.
     """
 
     title = "Does it float as Archimedes says, and does it right itself?"
@@ -207,26 +207,28 @@ class Floating(Experiment):
         return simulate(runs, duration=self.duration, progress=progress)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of the run with the last heel."""
-        return replayed(
-            "righting_replay.html",
-            record.isel(run=-1),
-            self.robot,
-            title="A robot rights itself",
-            caption=f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out.",
+        """Return the replay of the run with the last heel; a robot that does not float lies on the ground."""
+        heeled = f"Let go at the surface, heeled by {np.degrees(self.heels[-1]):.0f} degrees, limbs held out."
+        title, caption = (
+            ("A robot is let go at the surface", heeled)
+            if floats(self.robot)
+            else ("A robot that does not float", "It lies on the ground under water, limbs held out.")
         )
+        return replayed("righting_replay.html", record.isel(run=-1), self.robot, title=title, caption=caption)
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the errors against the exact answers, and the floating position of the robot."""
         heave = np.abs(record.heave_period / record.exact_heave_period - 1)
         rest_interval = record.isel(time=slice(-max(record.sizes["time"] // 4, 1), None))
         roll = rotation.heel(record.orientation.values)
-        final_roll = np.abs(roll[-1, -rest_interval.sizes["time"] :])
+        final_roll = np.unwrap(roll[-1])[-rest_interval.sizes["time"] :]
         is_upright = np.abs(roll[-1]) < _UPRIGHT
         first_upright = int(np.flatnonzero(~is_upright)[-1]) + 1 if not is_upright.all() else 0
         hull_record, bare_record = record.sel(hull="floating"), record.sel(hull="bare")
-        has_righted = float(hull_record.static_surplus) < 0.0 and 0 < first_upright < len(is_upright)
+        is_at_rest = _is_afloat(hull_record) and float(np.ptp(final_roll)) <= 2.0 * _UPRIGHT
+        has_righted = is_at_rest and 0 < first_upright <= len(is_upright) - len(final_roll)
         righting_time = float(record.time[first_upright]) if has_righted else nan
+        rest_heel = abs((float(final_roll.mean()) + pi) % tau - pi)
         return Measures(
             {
                 "draft_error": Measure(float(np.abs(record.body_draft - record.exact_draft).max()), "m"),
@@ -240,7 +242,7 @@ class Floating(Experiment):
                 "force_of_ballast": Measure(float(record.table_ballast), "N"),
                 "acceleration_of_keel": Measure(float(record.table_keel), "rad/s2"),
                 "share_above": Measure(float(1.0 - rest_interval.share_under.isel(run=0).mean()), "-"),
-                "roll_at_rest": Measure(float(final_roll.mean()), "rad"),
+                "roll_at_rest": Measure(rest_heel if is_at_rest else nan, "rad"),
                 "righting_time": Measure(righting_time, "s"),
             },
             {
@@ -254,7 +256,14 @@ class Floating(Experiment):
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return the reason for the outcome; a robot is indifferent where its metacentric height is next to zero."""
         height = measures.get("metacentric_height_floating", nan)
-        further = {"is_indifferent": abs(height) <= INDIFFERENT * self.robot.length}
+        further = {
+            "is_indifferent": abs(height) <= INDIFFERENT * self.robot.length,
+            "bare": buoyancy(measures["surplus_bare"], measures["mass_bare"]),
+            "floating": buoyancy(measures["surplus_floating"], measures["mass_floating"]),
+            "heavier": HEAVIER,
+            "mass_text": mass_text,
+            "volume_text": volume_text,
+        }
         return self.render_explanation({"metacentric_height_floating": height, **measures}, **further)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
@@ -275,17 +284,26 @@ _STATICS: Mapping[str, tuple[str, str]] = {
 """Measures that are fields of ``Hydrostatics``: the field and its unit."""
 
 
+def _is_afloat(statics: xr.Dataset) -> bool:
+    """Return whether a robot floats, from its hydrostatic numbers ``static_surplus`` and ``static_mass``."""
+    return buoyancy(float(statics.static_surplus), float(statics.static_mass)) == "floats"
+
+
 def draw_righting(record: xr.Dataset) -> Figure:
-    """Draw the righting lever over the heel, and the heel over time of robots that were let go.
+    """Draw the righting lever over the heel, and of robots that float the heel over time after they were let go.
 
     Args:
         record: record with ``lever`` (hull, heel) [m], and runs with ``orientation``.
     """
+    is_afloat = _is_afloat(record.sel(hull="floating"))
     with styled():
-        figure, axes = panels(1, 2, width=12.0, height=4.2)
+        figure, axes = panels(1, 2, width=12.0, height=4.2) if is_afloat else panels(1, 1, width=6.0, height=4.2)
         ax = axes[0, 0]
         heel = np.degrees(record.heel.values)
-        floats = {str(hull): float(record.static_surplus.sel(hull=hull)) < 0 for hull in record.hull.values}
+        labels = {
+            str(hull): "at the surface" if _is_afloat(record.sel(hull=hull)) else "under water"
+            for hull in record.hull.values
+        }
         hulls = {
             "floating": ("-", "coordinated", "with its hull, "),
             "bare": ((0, (5, 2)), "limbs_only", "without it, "),
@@ -293,25 +311,32 @@ def draw_righting(record: xr.Dataset) -> Figure:
         if np.array_equal(*record.lever.sel(hull=["floating", "bare"]).transpose("hull", ...)):  # the robot has no hull
             hulls = {"floating": ("-", "coordinated", "")}
         for hull, (dashes, colour, hull_text) in hulls.items():
-            label = hull_text + ("at the surface" if floats[hull] else "sunk")
-            ax.plot(heel, 1e3 * record.lever.sel(hull=hull), color=COLOURS[colour], linestyle=dashes, label=label)
+            lever = 1e3 * record.lever.sel(hull=hull)
+            ax.plot(heel, lever, color=COLOURS[colour], linestyle=dashes, label=hull_text + labels[hull])
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set(xlabel="heel [deg]", ylabel="righting lever GZ [mm]", xlim=(0, 180), xticks=range(0, 181, 30))
         ax.legend(loc="best")
-        ax = axes[0, 1]
-        for i, label in enumerate(record.label.values):
-            turn = record.orientation.isel(run=i).values
-            roll = np.arctan2(*(rotation.rotate(turn, np.eye(3)[axis])[:, 2] for axis in (1, 2)))
-            roll = np.degrees(np.unwrap(roll))
-            ax.plot(record.time, roll, color=_SHADES[i % 5], linestyle=_DASHES[i % 5], label=f"from {label}")
-        ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
-        ax.set(xlabel="time [s]", ylabel="heel [deg]", xlim=(0, min(10.0, float(record.time[-1]))))
-        ax.legend(loc="best")
+        if is_afloat:
+            _draw_rolls(axes[0, 1], record)
+    caption = "Righting lever over the heel, positive where the water turns the robot upright, draft and trim free"
     return captioned(
         figure,
-        "Righting lever over the heel with draft and trim free, positive where the water turns the robot upright; and "
-        "the heel over time of the robot let go at the surface.",
+        f"{caption}; and the heel over time of the robot let go at the surface."
+        if is_afloat
+        else f"{caption} at the surface, level under water. How it heels over time is not drawn: it does not float.",
     )
+
+
+def _draw_rolls(ax: Any, record: xr.Dataset) -> None:
+    """Draw the heel over time of each run."""
+    for i, label in enumerate(record.label.values):
+        turn = record.orientation.isel(run=i).values
+        roll = np.arctan2(*(rotation.rotate(turn, np.eye(3)[axis])[:, 2] for axis in (1, 2)))
+        roll = np.degrees(np.unwrap(roll))
+        ax.plot(record.time, roll, color=_SHADES[i % 5], linestyle=_DASHES[i % 5], label=f"from {label}")
+    ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
+    ax.set(xlabel="time [s]", ylabel="heel [deg]", xlim=(0, min(10.0, float(record.time[-1]))))
+    ax.legend(loc="best")
 
 
 def draw_checks(record: xr.Dataset) -> Figure:
