@@ -230,8 +230,8 @@ class _PlainPlant:
 
     def restore(self) -> None:
         """Undo what was written."""
-        for (field, row), original in self.original_rows.items():
-            np.asarray(getattr(self.model, field))[row : row + 1] = original
+        for (name, row), original in self.original_rows.items():
+            np.asarray(getattr(self.model, name))[row : row + 1] = original
         self.model.opt.disableactuator &= ~self.unpowered
         self.original_rows, self.unpowered = {}, 0
 

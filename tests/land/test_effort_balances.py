@@ -17,9 +17,14 @@ from suchus.sim.land import Run, simulate
 DURATION = 2.5
 ENERGY_TOLERANCE = 0.02
 """Greatest part of the energy that is turned over and that servos, springs, dampers and contacts leave open [-]."""
-WORK_TOLERANCES = {"usual": 0.02, "coarse": 0.05}
-"""Greatest change of the work to a quarter of the usual step, over the absolute work [-]. A control period has two
-coarse steps, in which the motion itself is another."""
+WORK_TOLERANCES = {"usual": 0.03, "coarse": 0.06}
+"""Greatest change of the work to a quarter of the usual step, over the absolute work [-].
+
+It is the walk itself that changes, not its measurement: a control period has two coarse steps, and the small salamander
+walks a little differently at its usual step too.
+"""
+MOST_WORK_TOLERANCE = 0.02
+"""The same at the usual step for nine robots in ten [-]."""
 HEAT_TOLERANCE = 0.03
 """Greatest difference of the heat by torque from that by temperature: what the torque changes within a step [-]."""
 
@@ -73,6 +78,7 @@ def assert_work_of_any_step(runs):
     changes = {run.label: work_changes(run) for run in runs}
     for name, bound in WORK_TOLERANCES.items():
         assert {label: found[name] for label, found in changes.items() if found[name] > bound} == {}, name
+    assert np.quantile([found["usual"] for found in changes.values()], 0.9, method="lower") < MOST_WORK_TOLERANCE
 
 
 def test_the_energy_of_designs_and_foreign_bodies_is_balanced():

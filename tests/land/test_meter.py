@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from suchus import GAITS, ROBOTS
 from suchus.core import water_table as hydro
