@@ -10,8 +10,7 @@ of MuJoCo.
 
 import sys
 from collections.abc import Mapping, MutableMapping, Sequence
-from dataclasses import dataclass, field
-from math import ceil
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import mujoco
@@ -23,14 +22,15 @@ from rich.table import Table
 import suchus
 from suchus.core.errors import IncompatibleRecord
 from suchus.robot.design import GRAVITY, Robot, layout
-from suchus.robot.design.body import servos_of
+from suchus.robot.gaits import default_gait
 from suchus.robot.motion import START
-from suchus.sim.fault import Fault
-from suchus.sim.land import Limp, Locked, Push, Run, Weak, simulate
+from suchus.sim.fault import Fault, SensorFault
+from suchus.sim.land import Backlash, Push, Run, simulate
 from suchus.sim.land.lake import gravity
 from suchus.sim.metrics import ground_force
 from suchus.sim.model import activations, compile_model, joint_addresses
 from suchus.sim.model.actuators import slew_column
+from suchus.sim.persistence import Persistence
 from suchus.sim.record import ground_of
 
 
@@ -82,20 +82,15 @@ def replay(record: xr.Dataset, robot: Robot, *, faults: Sequence[Fault] = (), pu
     data = mujoco.MjData(model)
     targets = record.servo_target.transpose("time", "servo").values
     _begin(model, data, record, robot)
-    plants = [(fault, _PlainPlant(model, data, robot), ceil(fault.at / period - 1e-9)) for fault in faults]
+    broken = [_BrokenPart(fault, _PlainPlant(model, data, robot), period) for fault in faults]
     account = _Account(model, data, timestep)
     samples: list[tuple[np.ndarray, np.ndarray]] = []
     for tick in range(len(targets) - 1):
         if tick == round(START / period):
             account.begin()
             samples.clear()
-        for fault, plant, first_tick in plants:
-            if tick >= first_tick:
-                plant.time = (tick - first_tick) * period
-                plant.targets = dict(zip(layout(robot).servos, targets[tick], strict=True))
-                if tick == first_tick:
-                    fault.apply(plant)
-                fault.command(plant)
+        for part in broken:
+            part.act(tick, targets[tick])
         _push(model, data, pushes, tick * period, (tick + 1) * period)
         data.ctrl[:] = targets[tick]
         for _ in range(round(period / timestep)):
@@ -142,6 +137,53 @@ def _push(model: Any, data: Any, pushes: Sequence[Push], start: float, end: floa
         data.xfrc_applied[model.body(push.body).id, :3] += push.overlap_fraction(start, end) * np.array(push.force)
 
 
+EXACT_ANGLE = 1e-9
+"""Difference of two angles that are the same but for rounding [rad]."""
+
+
+class _BrokenPart:
+    """A fault of a replay, with the control periods in which it is present.
+
+    Args:
+        fault: the fault.
+        plant: what it writes to.
+        period: control period [s].
+    """
+
+    def __init__(self, fault: Fault, plant: "_PlainPlant", period: float) -> None:
+        """Note the first spell."""
+        self._fault, self._plant, self._period = _as_recorded(fault), plant, period
+        self._spells = fault.persistence.spell_ticks(fault.part, fault.at, period)
+        self._begin, self._end = self._next_spell()
+
+    def act(self, tick: int, targets: np.ndarray) -> None:
+        """Begin, act or end in a control period, in which the servos are commanded these angles [rad]."""
+        if self._end is not None and tick >= self._end:
+            self._fault.mend(self._plant)
+            self._begin, self._end = self._next_spell()
+        if self._begin is None or tick < self._begin:
+            return
+        self._plant.time = (tick - self._begin) * self._period
+        self._plant.targets = dict(zip(layout(self._plant.robot).servos, targets, strict=True))
+        if tick == self._begin:
+            self._plant.memory = {}
+            self._fault.apply(self._plant)
+        self._fault.command(self._plant)
+
+    def _next_spell(self) -> tuple[int | None, int | None]:
+        """Return the first control period of the next spell and the first one after it; None where there is none."""
+        return next(self._spells, (None, None))
+
+
+def _as_recorded(fault: Fault) -> Fault:
+    """Return a fault that acts on recorded commands as the fault itself acts on the controller's.
+
+    A record holds the angle of the shaft while a servo is free within its backlash, and otherwise that of the gap's
+    end: from there no gap is left.
+    """
+    return replace(fault, gap=min(fault.gap, EXACT_ANGLE)) if isinstance(fault, Backlash) else fault
+
+
 @dataclass(slots=True)
 class _PlainPlant:
     """A ``fault.Plant`` that writes to one MuJoCo model; nothing is sensed."""
@@ -152,9 +194,14 @@ class _PlainPlant:
     time: float = 0.0
     memory: dict[str, float] = field(default_factory=dict)
     targets: MutableMapping[str, float] = field(default_factory=dict)
+    original_rows: dict[tuple[str, int], np.ndarray] = field(default_factory=dict)
+    unpowered: int = 0
+    """Bits of the groups of servos from which the torque was taken."""
 
     def angle(self, servo: str) -> float:
-        """Return the angle at a servo's shaft [rad]."""
+        """Return the angle at a servo's shaft as it is now [rad]; a step leaves that at its own beginning."""
+        for update in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_tendon, mujoco.mj_transmission):
+            update(self.model, self.data)
         return float(self.data.actuator_length[self.model.actuator(servo).id])
 
     def felt(self, group: str, part_name: str | None = None) -> np.ndarray:
@@ -168,6 +215,7 @@ class _PlainPlant:
         kind = field.partition("_")[0]
         row = int(accessor[kind](element).id) if kind in accessor else int(self.model.joint(element).dofadr[0])
         values = np.asarray(getattr(self.model, field))[row : row + 1]
+        self.original_rows.setdefault((field, row), values.copy())
         return values[0] if values.ndim > 1 else values
 
     def speed_limit(self, servo: str) -> np.ndarray:
@@ -177,10 +225,15 @@ class _PlainPlant:
 
     def unpower(self, servo: str) -> None:
         """Take the torque from a servo."""
-        self.model.opt.disableactuator |= 1 << int(self.model.actuator(servo).group[0])
+        self.unpowered |= 1 << int(self.model.actuator(servo).group[0])
+        self.model.opt.disableactuator |= self.unpowered
 
     def restore(self) -> None:
-        """Do nothing: a replayed fault is never mended."""
+        """Undo what was written."""
+        for (name, row), original in self.original_rows.items():
+            np.asarray(getattr(self.model, name))[row : row + 1] = original
+        self.model.opt.disableactuator &= ~self.unpowered
+        self.original_rows, self.unpowered = {}, 0
 
 
 class _Account:
@@ -312,19 +365,44 @@ LIMITS: Mapping[str, float] = {
 """Greatest absolute values of a ``Replay`` that agrees."""
 
 
+PAGE_WIDTH = 150
+"""Width of the table in a file [character]."""
+FAULT_TIME = 1.5
+"""Time at which the faults of the replayed runs begin [s]."""
+
+
 def runs() -> list[Run]:
-    """Return the runs that are replayed: each body in its gaits, and the article's robot with faults."""
-    bodies = [
+    """Return the runs that are replayed: each body of the catalog in its gaits, and in its own gait with each fault."""
+    bodies = [robot for robot in suchus.ROBOTS.values() if layout(robot).limbs]
+    walks = [
         Run(robot=robot, gait=gait, label=f"{robot.name} {gait.name}")
-        for robot in suchus.ROBOTS.values()
-        if layout(robot).limbs
+        for robot in bodies
         for gait in suchus.GAITS.values()
         if _suits(robot, gait)
     ]
-    robot, gait = suchus.ROBOTS["caiman"], suchus.GAITS["low_crawl"]
-    servo = next(iter(servos_of(robot)))
-    broken = (Limp(servo, 1.5), Locked(servo, 1.5), Weak(servo, 0.3, 1.5))
-    return [*bodies, *(Run(robot=robot, gait=gait, faults=(fault,), label=type(fault).__name__) for fault in broken)]
+    broken = [
+        Run(
+            robot=robot, gait=default_gait(robot), faults=(fault,),
+            label=f"{robot.name} {fault.name} {fault.persistence.kind}",
+        )
+        for robot in bodies
+        for fault in faults_of(robot)
+    ]  # fmt: skip
+    return [*walks, *broken]
+
+
+def faults_of(robot: Robot) -> list[Fault]:
+    """Return each kind of fault of the first part of a robot, as one that stays, recovers, and comes and goes."""
+    settings: Mapping[str, Mapping[str, float]] = {
+        "backlash": {"gap": 0.1}, "delayed": {"delay": 0.1}, "offset": {"angle": 0.2}, "slow": {"speed": 0.5},
+        "weak": {"fraction": 0.3},
+    }  # fmt: skip
+    persistences = (Persistence(), Persistence(duration=0.4), Persistence(rate=2.0, length=0.1, seed=1))
+    return [
+        kind(kind.parts(robot)[0], at=FAULT_TIME, persistence=persistence, **settings.get(name, {}))
+        for name, kind in suchus.FAULTS.items()
+        for persistence in (persistences[:1] if issubclass(kind, SensorFault) else persistences)
+    ]
 
 
 def _suits(robot: Robot, gait: Any) -> bool:
@@ -337,16 +415,18 @@ def _suits(robot: Robot, gait: Any) -> bool:
 
 
 def main() -> int:
-    """Replay all runs and print the table; return 1 where one disagrees."""
-    table, bad = Table("run", *(name.replace("_", " ") for name in LIMITS)), 0
-    for run in runs():
+    """Replay all runs and print the table and the count; return 1 where one disagrees."""
+    table, bad, replayed = Table("run", *(name.replace("_", " ") for name in LIMITS)), 0, runs()
+    for run in replayed:
         record = simulate([run], duration=3.0)
         result = replay(record.isel(run=0), run.robot, faults=run.faults, pushes=run.pushes)
         values = {name: getattr(result, name) for name in LIMITS}
         agrees = all(abs(values[name]) <= LIMITS[name] for name in LIMITS)
         bad += not agrees
         table.add_row(run.label, *(f"{value:.2g}" for value in values.values()), style=None if agrees else "red")
-    Console().print(table)
+    console = Console() if sys.stdout.isatty() else Console(width=PAGE_WIDTH)
+    console.print(table)
+    console.print(f"{len(replayed) - bad} of {len(replayed)} records agree.")
     return int(bad > 0)
 
 

@@ -7,7 +7,8 @@ import pytest
 from evidence.replay_check import LIMITS, replay, runs
 from suchus import GAITS, ROBOTS
 from suchus.core.errors import IncompatibleRecord
-from suchus.sim.land import VACUUM, Ground, Lake, Limp, Locked, Push, Run, Weak, simulate
+from suchus.sim.land import VACUUM, Backlash, Ground, Lake, Limp, Locked, LostFoot, Push, Run, Slow, Weak, simulate
+from suchus.sim.persistence import Persistence
 
 CAIMAN, CRAWL = ROBOTS["caiman"], GAITS["belly_crawl"]
 
@@ -29,6 +30,14 @@ SAMPLE = {
     "locked": Run(robot=CAIMAN, gait=CRAWL, faults=(Locked("LH_yaw", 1.2),)),
     "weak": Run(robot=CAIMAN, gait=CRAWL, faults=(Weak("RH_pitch", 0.2, 1.0),)),
     "push": Run(robot=CAIMAN, gait=CRAWL, pushes=(Push(at=1.2, force=(0.0, 9.0, 0.0)),)),
+    "backlash": Run(robot=CAIMAN, gait=CRAWL, faults=(Backlash("LF_yaw", gap=0.1, at=1.2),)),
+    "limp, and powered again": Run(
+        robot=CAIMAN, gait=GAITS["low_crawl"], faults=(Limp("LF_yaw", 1.5, persistence=Persistence(duration=0.4)),)
+    ),
+    "spells": Run(
+        robot=CAIMAN, gait=CRAWL, faults=(Slow("LF_yaw", 0.5, 1.2, persistence=Persistence(rate=3.0, length=0.2)),)
+    ),
+    "lost foot": Run(robot=CAIMAN, gait=CRAWL, faults=(LostFoot("LF", 1.2, persistence=Persistence(duration=0.5)),)),
     "six legs": Run(robot=ROBOTS["strider"], gait=GAITS["tripod"]),
     "salamander": Run(robot=ROBOTS["salamander"], gait=GAITS["salamander_walk"]),
 }
@@ -39,7 +48,7 @@ def test_a_record_is_what_plain_mujoco_does(name):
     assert disagreements(SAMPLE[name]) == {}
 
 
-@pytest.mark.slow("every body in every gait and each kind of fault: more than ten seconds")
+@pytest.mark.slow("every body in every gait, and with each kind of fault: three minutes")
 def test_all_bodies_gaits_and_faults_agree():
     assert {run.label: found for run in runs() if (found := disagreements(run))} == {}
 

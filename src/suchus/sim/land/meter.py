@@ -20,6 +20,9 @@ _LOOP_DAMPING = 6
 """Column of ``actuator_gainprm`` in which MuJoCo's dcmotor keeps the derivative gain of its loop [N m s/rad]."""
 _PID_DAMPING = 2
 """Column of ``actuator_biasprm`` in which MuJoCo's pid keeps minus its derivative gain [N m s/rad]."""
+_FULL_SUPPLY = 0.98
+"""Fraction of the supply from which on a servo is taken to have all of it [-]; a winding that is 5 K warmer than its
+room has so much less torque of the same voltage."""
 _MIN_TORQUE = 1e-9
 """Least torque [N m] that a torque is compared with."""
 MEAN_TORQUE, MEAN_SQUARE, POWER, ABSOLUTE_POWER, PEAK, USE = range(len(EFFORT))
@@ -53,6 +56,8 @@ class ServoLaws:
         """Loss of torque with speed that MuJoCo's implicit step takes into account [N m s/rad]."""
         self.falling_torque = self.stall_torque / no_load_speed
         """Torque that a speed in its direction takes away, over that speed [N m s/rad]."""
+        self.full_supply_damping = np.zeros(shape)
+        """What ``damping`` is while a servo has its full supply: its loop has no say there [N m s/rad]."""
         self.is_implicit = np.ones(len(robots), dtype=bool)
         """Whether the physics of a run takes implicit steps, shape (run,)."""
         self.is_powered = np.ones(shape, dtype=bool)
@@ -72,7 +77,8 @@ class ServoLaws:
         """
         self.limit[sim] = force_range[:, 1]
         loop_damping = np.where(self._is_motor, gain[:, _LOOP_DAMPING], -bias[:, _PID_DAMPING])
-        self.damping[sim] = loop_damping * (self.is_powered[sim] & self.is_implicit[sim])
+        acts = self.is_powered[sim] & self.is_implicit[sim]
+        self.damping[sim], self.full_supply_damping[sim] = loop_damping * acts, self.falling_torque[sim] * acts
         supply = gain[:, SUPPLY] / self._volts[sim]
         self.supplied_torque[sim] = self.stall_torque[sim] * np.where(np.isnan(supply), 1.0, supply)
 
@@ -169,7 +175,9 @@ def applied_torque(
     laws: ServoLaws,
 ) -> Float[np.ndarray, "step run servo"]:
     """Return the torque that MuJoCo's implicit steps apply; the arguments are those of ``servo_effort`` [N m]."""
-    applied = (end_speed - start_speed) * laws.damping
+    standstill_torque = np.abs(torque + laws.falling_torque * start_speed)  # of the same voltage
+    has_full_supply = standstill_torque >= _FULL_SUPPLY * laws.supplied_torque
+    applied = (end_speed - start_speed) * np.where(has_full_supply, laws.full_supply_damping, laws.damping)
     applied *= np.abs(torque) < laws.limit  # a torque at its limit stays there
     return np.asarray(np.subtract(torque, applied, out=applied))
 
