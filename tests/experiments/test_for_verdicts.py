@@ -40,10 +40,17 @@ def needed_swims(record: xr.Dataset) -> xr.Dataset:
     return kept.isel(arm=[0], reading=[]).assign(ladder_speed=kept.ladder_speed.where(is_theory, speeds))
 
 
+def judged_swims(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without stiffer joints, half the time step and the swims below the surface."""
+    is_as_designed = [not str(label).endswith("_stiff") for label in record.label.values]
+    return record.isel(run=is_as_designed).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
+
+
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": lambda record: record.drop_dims("direction"),
     "feedback": told_walks,
     "joint_faults": lambda record: record.isel(joint=slice(0, 4)),
+    "swim_free": judged_swims,
     "swimming": needed_swims,
     "terrain": lambda record: record.drop_sel(arm="switching"),
 }
