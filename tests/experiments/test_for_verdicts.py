@@ -49,7 +49,7 @@ def judged_swims(record: xr.Dataset) -> xr.Dataset:
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": lambda record: record.drop_dims("direction"),
     "feedback": told_walks,
-    "joint_faults": lambda record: record.isel(joint=slice(0, 4)),
+    "joint_faults": lambda record: record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]),
     "swim_free": judged_swims,
     "swimming": needed_swims,
     "terrain": lambda record: record.drop_sel(arm="switching"),
