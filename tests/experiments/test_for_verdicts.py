@@ -50,6 +50,7 @@ SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": lambda record: record.drop_dims("direction"),
     "feedback": told_walks,
     "joint_faults": lambda record: record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]),
+    "salamander_swim": lambda record: record.drop_dims("animal"),
     "swim_free": judged_swims,
     "swimming": needed_swims,
     "terrain": lambda record: record.drop_sel(arm="switching"),
