@@ -90,7 +90,11 @@ class Movement:
             limbs: phases of the limbs [cycle].
         """
         angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._phase_remainder)
-        return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
+        pulls = np.empty((2, *angle.shape))
+        np.cos(angle, out=pulls[0])
+        np.sin(angle, out=pulls[1])
+        forward, sideways = self._mean(pulls)
+        return np.asarray(forward + 1j * sideways)
 
     def _mean(self, pulls: np.ndarray) -> np.ndarray:
         """Return the signed mean over the limbs, summed in a fixed order so that the batch size changes no bit."""
