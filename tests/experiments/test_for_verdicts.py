@@ -34,7 +34,7 @@ def told_walks(record: xr.Dataset) -> xr.Dataset:
 
 def needed_swims(record: xr.Dataset) -> xr.Dataset:
     printed = [name for name in record.variables if str(name).startswith("printed_") and name != "printed_model_speed"]
-    kept = record.drop_vars(printed)
+    kept = record.drop_vars([*printed, "towed_drag"])
     speeds = kept.ladder_speed.where(kept.ladder_motion == "trunk and tail")
     is_theory = kept.rung.isin(["resistive", "reactive", "sections"])
     return kept.isel(arm=[0], reading=[]).assign(ladder_speed=kept.ladder_speed.where(is_theory, speeds))
