@@ -34,16 +34,24 @@ def told_walks(record: xr.Dataset) -> xr.Dataset:
 
 def needed_swims(record: xr.Dataset) -> xr.Dataset:
     printed = [name for name in record.variables if str(name).startswith("printed_") and name != "printed_model_speed"]
-    kept = record.drop_vars(printed)
+    kept = record.drop_vars([*printed, "towed_drag"])
     speeds = kept.ladder_speed.where(kept.ladder_motion == "trunk and tail")
     is_theory = kept.rung.isin(["resistive", "reactive", "sections"])
     return kept.isel(arm=[0], reading=[]).assign(ladder_speed=kept.ladder_speed.where(is_theory, speeds))
 
 
+def judged_swims(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without stiffer joints, half the time step and the swims below the surface."""
+    is_as_designed = [not str(label).endswith("_stiff") for label in record.label.values]
+    return record.isel(run=is_as_designed).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
+
+
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": lambda record: record.drop_dims("direction"),
     "feedback": told_walks,
-    "joint_faults": lambda record: record.isel(joint=slice(0, 4)),
+    "joint_faults": lambda record: record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]),
+    "salamander_swim": lambda record: record.drop_dims("animal"),
+    "swim_free": judged_swims,
     "swimming": needed_swims,
     "terrain": lambda record: record.drop_sel(arm="switching"),
 }

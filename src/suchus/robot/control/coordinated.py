@@ -1,5 +1,6 @@
 """The closed loop: limbs, spine and tail each with a rule of its own, joined by the shared variables."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -124,15 +125,16 @@ class Coordinator:
         self._table = OpenLoop.start(runs._replace(controls=(OpenLoop(),) * len(robots)), period)
         self._gaits = Batch(robots, gaits)
         phase_lead = np.zeros((len(robots), limbs))
-        self._noise: list[tuple[int, float, np.random.Generator]] = []
+        noise: dict[int, tuple[float, np.random.Generator]] = {}
         self._kicks: dict[int, list[tuple[int, np.ndarray]]] = {}
         for run, (control, gait, seed) in enumerate(zip(controls, gaits, seeds, strict=True)):
             if control.random_start:
                 phase_lead[run] = np.random.default_rng([seed, 0]).random(limbs) - gait.limb_phases
             if control.load_noise > 0.0:
-                self._noise.append((run, control.load_noise, np.random.default_rng([seed, 1])))
+                noise[run] = control.load_noise, np.random.default_rng([seed, 1])
             for kick in control.kicks:
                 self._kicks.setdefault(int(np.ceil(kick.at / period - _SLACK)), []).append((run, np.array(kick.ahead)))
+        self._noise = _LoadNoise(noise, limbs) if noise else None
         self._hears = np.array([control.sharing for control in controls])[:, None]
         self._limbs = Limbs([control.limbs for control in controls], robots, gaits, phase_lead, period)
         self._spine = SpineController([control.spine for control in controls], robots, period)
@@ -176,8 +178,8 @@ class Coordinator:
         walking = tick * self._period >= START - _SLACK
         for run, phase_lead in self._kicks.get(tick, ()):
             self._limbs.kick(run, phase_lead)
-        if sensed is not None and self._noise:
-            sensed = self._noisy(sensed)
+        if sensed is not None and self._noise is not None:
+            sensed = replace(sensed, foot_pressure=self._noise.disturb(sensed.foot_pressure))
         self._share(tick, sensed, walking=walking)
         if sensed is not None and self._heading is not None:
             self._steering = self._heading.step(sensed, walking=walking)
@@ -212,11 +214,33 @@ class Coordinator:
         steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
         return np.where(is_adjusted[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
 
-    def _noisy(self, sensed: Sensed) -> Sensed:
-        pressure = sensed.foot_pressure.copy()
-        for run, loudness, rng in self._noise:
-            pressure[run] *= np.maximum(1.0 + loudness * rng.standard_normal(pressure.shape[1]), 0.0)
-        return replace(sensed, foot_pressure=pressure)
+
+class _LoadNoise:
+    """Noise on what feet feel, drawn for many control periods at a time: the numbers are those of single draws."""
+
+    _DRAWN = 256  # control periods
+
+    def __init__(self, loudness_and_rng: Mapping[int, tuple[float, np.random.Generator]], limbs: int) -> None:
+        """Begin with the noise of the first control periods.
+
+        Args:
+            loudness_and_rng: standard deviation [-] and generator of each run that has noise.
+            limbs: number of limbs of each robot.
+        """
+        self._runs = list(loudness_and_rng)
+        self._loudness = np.array([loudness for loudness, _ in loudness_and_rng.values()])[:, None]
+        self._rngs, self._limbs = [rng for _, rng in loudness_and_rng.values()], limbs
+        self._noise, self._next = np.zeros((len(self._runs), 0, limbs)), 0
+
+    def disturb(self, pressure: Float[np.ndarray, "run limb"]) -> Float[np.ndarray, "run limb"]:
+        """Return the pressures of one more control period with their noise [N]."""
+        if self._next == self._noise.shape[1]:
+            self._noise = np.stack([rng.standard_normal((self._DRAWN, self._limbs)) for rng in self._rngs])
+            self._next = 0
+        disturbed = pressure.copy()
+        disturbed[self._runs] *= np.maximum(1.0 + self._loudness * self._noise[:, self._next], 0.0)
+        self._next += 1
+        return disturbed
 
 
 def _refuse_others(control: Coordinated, robot: Robot, gait: Gait) -> None:

@@ -51,6 +51,7 @@ class SpineController:
             period: control period [s].
         """
         self._is_active = np.array([rule is not None for rule in rules])
+        self._has_rule = bool(self._is_active.any())
         self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else decay_factor(rule.delay, period) for rule in rules])
         self._yaw = list(layout(robots[0]).trunk_yaw)
@@ -91,7 +92,7 @@ class SpineController:
             target_bend: bend of the trunk [rad].
             sensed: sensor readings of the robots.
         """
-        if not self._is_active.any():
+        if not self._has_rule:
             return targets
         lacking = target_bend - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)

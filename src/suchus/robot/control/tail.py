@@ -13,8 +13,6 @@ from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch, Gait
 from suchus.robot.motion.limbs import bounded
 
-_BEND_TOLERANCE = 1e-9  # [rad]; smaller bends count as none
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TailRule:
@@ -60,7 +58,8 @@ class TailController:
         self._target_pitch = np.array([gait.number("tail_pitch") / joint_count for gait in gaits])
         self._pitch = self._target_pitch
         self._is_active = np.array([rule is not None for rule in rules]) & (self._pitch >= 0.0)
-        if not self._is_active.any():
+        self._has_rule = bool(self._is_active.any())
+        if not self._has_rule:
             return
         self._step = period * np.array([0.0 if rule is None else rule.rate for rule in rules])
         self._column = layout(robots[0]).tail_pitch[0]
@@ -80,12 +79,15 @@ class TailController:
             gaits: gaits of the runs.
             clock: since the walk began, for bodies without limbs [cycle].
         """
-        (trunk, trunk_steady), (tail, steady) = gaits.swing_and_offset("trunk"), gaits.swing_and_offset("tail")
-        bends = np.abs(trunk) > _BEND_TOLERANCE
+        (_, trunk_steady), (tail, steady) = gaits.swing_and_offset("trunk"), gaits.swing_and_offset("tail")
+        ratio = gaits.swing_ratio("tail", "trunk")
         # bend and direction together are the trunk's whole wave, swing times order parameter
         wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
-        follows = np.zeros_like(tail) if bends.all() else tail * gaits.axis_phase(shared.limb_phase, clock)
-        follows[bends] = tail[bends] / trunk[bends] * wave[bends]
+        follows = ratio.values * wave
+        if not ratio.are_finite:
+            follows = np.where(
+                np.isfinite(ratio.values), follows, tail * gaits.axis_phase(shared.limb_phase, clock)
+            )
         return shared.updated_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
     def take_over(self, predecessor: "TailController") -> None:
@@ -96,7 +98,7 @@ class TailController:
 
     def correct(self, targets: Float[np.ndarray, "run servo"], sensed: Sensed) -> Float[np.ndarray, "run servo"]:
         """Return the targets with the tail pitched by the torque feedback of one more control period."""
-        if not self._is_active.any():
+        if not self._has_rule:
             return targets
         gives = self._step * finite(sensed.servo_torque[:, self._column])
         self._pitch = bounded(self._pitch - gives, self._lower_bound, self._upper_bound)

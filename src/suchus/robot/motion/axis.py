@@ -93,7 +93,7 @@ class Waves:
         self._real = not self.swing.imag.any()
         self._steady = bool(self.offset.any())
         self.moves = bool(self.swing.any()) or self._steady
-        self._is_evenly_shared: dict[tuple[int, ...], np.ndarray] = {}
+        self._is_evenly_shared: dict[tuple[int, ...], tuple[np.ndarray, bool]] = {}
 
     def bends(
         self, z: Complex[np.ndarray, "*batch"], size: np.ndarray | float | None = None
@@ -121,20 +121,21 @@ class Waves:
         """
         if not len(indices):
             return np.zeros(bends.shape[:-1])
-        is_shared_evenly, first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
-        if is_shared_evenly.all():  # the sum of n nths differs by rounding
+        (is_shared_evenly, are_all), first_bend = self._takes_the_same(tuple(indices)), bends[..., indices[0]]
+        if are_all:  # the sum of n nths differs by rounding
             return np.asarray(first_bend)
         parts = (bends[..., indices] / self.hinge_counts[:, indices]).sum(axis=-1)
         return np.asarray(np.where(is_shared_evenly, first_bend, parts))
 
-    def _takes_the_same(self, indices: tuple[int, ...]) -> Bool[np.ndarray, " run"]:
-        """Return for each run whether some hinges are exactly those that share one bend evenly."""
+    def _takes_the_same(self, indices: tuple[int, ...]) -> tuple[Bool[np.ndarray, " run"], bool]:
+        """Return for each run whether some hinges are exactly those that share one bend evenly, and whether in all."""
         if indices not in self._is_evenly_shared:
             rows, first_row = list(indices), [indices[0]]
             is_equal = (self.swing[:, rows] == self.swing[:, first_row]) & (
                 self.offset[:, rows] == self.offset[:, first_row]
             )
-            self._is_evenly_shared[indices] = (is_equal & (self.hinge_counts[:, rows] == len(indices))).all(axis=1)
+            is_shared = (is_equal & (self.hinge_counts[:, rows] == len(indices))).all(axis=1)
+            self._is_evenly_shared[indices] = is_shared, bool(is_shared.all())
         return self._is_evenly_shared[indices]
 
     def swing_and_offset(self, indices: Sequence[int]) -> tuple[Complex[np.ndarray, " run"], Float[np.ndarray, " run"]]:

@@ -26,6 +26,18 @@ START = CRAWL_START
 """A robot stands still until then, so that it has settled on the ground [s]."""
 
 
+_BEND_TOLERANCE = 1e-9  # [rad]; smaller swings count as none
+
+
+class SwingRatio(NamedTuple):
+    """How far one part of each run swings for the swing of another."""
+
+    values: Complex[np.ndarray, " run"]
+    """Swing of the one over that of the other [-]; NaN where the other does not swing."""
+    are_finite: bool
+    """Whether the other swings in every run."""
+
+
 class Intended(NamedTuple):
     """Intended motion over time."""
 
@@ -78,7 +90,11 @@ class Movement:
             limbs: phases of the limbs [cycle].
         """
         angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._phase_remainder)
-        return np.asarray(self._mean(np.cos(angle)) + 1j * self._mean(np.sin(angle)))
+        pulls = np.empty((2, *angle.shape))
+        np.cos(angle, out=pulls[0])
+        np.sin(angle, out=pulls[1])
+        forward, sideways = self._mean(pulls)
+        return np.asarray(forward + 1j * sideways)
 
     def _mean(self, pulls: np.ndarray) -> np.ndarray:
         """Return the signed mean over the limbs, summed in a fixed order so that the batch size changes no bit."""
@@ -174,9 +190,10 @@ class Movement:
         """
         size = None if steer is None else steer.size
         tail = 0.0 if steer is None else steer.tail
-        if self.yaw.moves or np.any(tail):
+        bends_tail = bool(np.any(tail)) if np.ndim(tail) else tail != 0.0
+        if self.yaw.moves or bends_tail:
             bends = self.yaw.bends(axis, size)
-            if np.any(tail):
+            if bends_tail:
                 bends = bends + self._of_tail(tail)
             servo_angles = self._direct_signs * bends[..., self._direct] / self._direct_counts
             targets[..., self._direct_servos] = servo_angles
@@ -251,10 +268,14 @@ class Batch:
         self.phases = np.array([gait.limb_phases for gait in gaits], dtype=float).reshape(len(gaits), -1)
         self.periods = np.array([gait.period for gait in gaits])
         self._servos = len(layout(robots[0]).servos)
+        self._only = self.groups[0][0] if len(self.groups) == 1 else None  # most batches: nothing to sort
         self._swings: dict[AxisRegion, tuple[np.ndarray, np.ndarray]] = {}
+        self._swing_ratios: dict[tuple[AxisRegion, AxisRegion], SwingRatio] = {}
 
     def axis_phase(self, limbs: Float[np.ndarray, "run limb"], clock: Float[np.ndarray, " run"]) -> np.ndarray:
         """Return the order parameter of each run's axis: of its limbs, or of its clock without limbs [-]."""
+        if self._only is not None:
+            return self._only.axis_phase(limbs) if limbs.shape[1] else self._only.axis_of_clock(clock)
         z = np.zeros(len(limbs), dtype=complex)
         for movement, runs in self.groups:
             z[runs] = movement.axis_phase(limbs[runs]) if limbs.shape[1] else movement.axis_of_clock(clock[runs])
@@ -270,6 +291,8 @@ class Batch:
             axis: what the axis follows [-].
             steer: what is asked besides.
         """
+        if self._only is not None:
+            return self._only.targets(limbs, axis, steer)
         targets = np.zeros((len(limbs), self._servos))
         for movement, runs in self.groups:
             run_steer = None if steer is None else Steer(*(_of_runs(field, runs) for field in steer))
@@ -278,6 +301,8 @@ class Batch:
 
     def bend_of(self, region: AxisRegion, axis: Complex[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
         """Return how far a part of each run bends sideways, left positive [rad]."""
+        if self._only is not None:
+            return self._only.bend_of(region, axis)
         bend = np.zeros(len(axis))
         for movement, runs in self.groups:
             bend[runs] = movement.bend_of(region, axis[runs])
@@ -293,6 +318,16 @@ class Batch:
             swing.flags.writeable = steady.flags.writeable = False
             self._swings[region] = swing, steady
         return self._swings[region]
+
+    def swing_ratio(self, region: AxisRegion, over: AxisRegion) -> SwingRatio:
+        """Return the swing of one part of each run over that of another."""
+        if (region, over) not in self._swing_ratios:
+            (swing, _), (other, _) = self.swing_and_offset(region), self.swing_and_offset(over)
+            swings, values = np.abs(other) > _BEND_TOLERANCE, np.full(len(self.periods), np.nan, dtype=complex)
+            values[swings] = swing[swings] / other[swings]
+            values.flags.writeable = False
+            self._swing_ratios[region, over] = SwingRatio(values, bool(swings.all()))
+        return self._swing_ratios[region, over]
 
 
 def structure(gait: Gait) -> Any:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from jaxtyping import Float
 
 from suchus.robot.motion import Gait
 from suchus.sim.metrics.gait import diagonals
@@ -20,16 +21,23 @@ def phase_error(phase: xr.DataArray, gait: Gait) -> xr.DataArray:
         phase: phase of the limbs, with the dimension ``leg`` [cycle].
         gait: gait whose phases are meant.
     """
-    target_phases, legs = gait.limb_phases, phase.sizes["leg"]
-    errors = []
-    for first_leg, second_leg in [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]:
-        deviation = (
-            phase.isel(leg=first_leg, drop=True)
-            - phase.isel(leg=second_leg, drop=True)
-            - (target_phases[first_leg] - target_phases[second_leg])
-        )
-        errors.append(abs(np.mod(deviation + 0.5, 1.0) - 0.5))
-    return xr.concat(errors, "pair", join="exact").max("pair").rename("phase_error")
+    error = xr.apply_ufunc(greatest_phase_error, phase, kwargs={"gait": gait}, input_core_dims=[["leg"]])
+    return error.rename("phase_error")
+
+
+def greatest_phase_error(phase: Float[np.ndarray, "*batch leg"], gait: Gait) -> Float[np.ndarray, "*batch"]:
+    """Return ``phase_error`` of phases in an array [cycle].
+
+    Args:
+        phase: phase of the limbs [cycle].
+        gait: gait whose phases are meant.
+    """
+    target_phases, legs = gait.limb_phases, phase.shape[-1]
+    pairs = [*diagonals(legs), *((i, i + 1) for i in range(0, legs, 2))]
+    first_legs, second_legs = (list(column) for column in zip(*pairs, strict=True))
+    target_differences = np.array([target_phases[first] - target_phases[second] for first, second in pairs])
+    deviation = phase[..., first_legs] - phase[..., second_legs] - target_differences
+    return np.asarray(np.fmax.reduce(np.abs(np.mod(deviation + 0.5, 1.0) - 0.5), axis=-1))
 
 
 def cycles_until(

@@ -1,11 +1,10 @@
 """When it is known of a random start whether its limbs find the gait, so that its run can end."""
 
 import numpy as np
-import xarray as xr
 from jaxtyping import Bool, Float, Int
 
 from suchus.robot.motion import START, Gait
-from suchus.sim.metrics.coordination import PHASE_TOLERANCE, phase_error
+from suchus.sim.metrics.coordination import PHASE_TOLERANCE, greatest_phase_error
 
 STAY = 1.5
 """Duration in step after which a start counts as converged for good, over that for which it must hold [-]: with two
@@ -42,8 +41,7 @@ class KnownStarts:
         step, self._cycle = cycle - self._cycle, cycle
         if cycle < 0.0:
             return np.zeros(len(runs), dtype=bool)
-        error = phase_error(xr.DataArray(phase, dims=("run", "leg")), self._gait).values
-        is_outside = error > PHASE_TOLERANCE
+        is_outside = greatest_phase_error(phase, self._gait) > PHASE_TOLERANCE
         self._out_of_step[runs[is_outside]] = cycle
         is_lost = is_outside & (cycle + step > self._last_end + _ROUNDING)
         is_found = cycle - self._out_of_step[runs] >= self._stay - _ROUNDING

@@ -120,6 +120,8 @@ class JointFaults(TwoGroups):
     hinges: int | None = None
     """Hinges of each limb, from the hip on, that fail one after another; None for all. The article names no knee
     [-]."""
+    steered: bool = True
+    """Whether the judged faults are simulated with feedback rules and heading loop too, for comparison."""
     repeats: int = 6
     """Number of robots built of the design for each condition and fault [-]; six at least give a median an interval."""
     timestep: float = 0.005
@@ -136,8 +138,8 @@ class JointFaults(TwoGroups):
         check.number("lifted", -1.6, 1.6, "rad")
 
     def for_verdicts(self) -> "JointFaults":
-        """Return the same question without failing knees, and with three places of locking."""
-        return replace(self, hinges=_HINGES_PER_LIMB, holds=(0.0, 0.5, 1.0))
+        """Return the same question without failing knees and steering, and with three places of locking."""
+        return replace(self, hinges=_HINGES_PER_LIMB, holds=(0.0, 0.5, 1.0), steered=False)
 
     def quick(self) -> "JointFaults":
         """One cycle, two repeats, two places of locking."""
@@ -194,7 +196,8 @@ class JointFaults(TwoGroups):
             for name in measures
             if name.startswith("loss_") and name.endswith(f"{reading}_coordinated")
         ]
-        return self.render_explanation(measures, joints=joints, reading=reading)
+        can_steer = self.gait.has("steering")
+        return self.render_explanation(measures, joints=joints, reading=reading, can_steer=can_steer)
 
     @property
     def _duration(self) -> float:
@@ -335,7 +338,8 @@ class JointFaults(TwoGroups):
 
     def _comparison_record(self, progress: Any) -> xr.Dataset:
         """Simulate the judged faults with steering, and with limbs only and the tail in the air."""
-        joints, gaits, steers = self._failing_joints, self._gaits, self.gait.has("steering")
+        joints, gaits = self._failing_joints, self._gaits
+        steers = self.steered and self.gait.has("steering")
         cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
         if steers:
             control = Coordinated(heading=HeadingRule()).suited(self.robot, self.gait)

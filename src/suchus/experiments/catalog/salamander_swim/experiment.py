@@ -90,6 +90,10 @@ class SalamanderSwim(Experiment):
             self, frequencies=self.frequencies[:1], settle=1, cycles=2, factors=(), own_size=self.own_size[:1]
         )
 
+    def for_verdicts(self) -> "SalamanderSwim":
+        """Return the same question without other waters and animals of their own size, which no verdict reads."""
+        return replace(self, factors=(), own_size=())
+
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Swim at every frequency, and in other waters at the highest."""
         water = Water()
@@ -114,13 +118,13 @@ class SalamanderSwim(Experiment):
             stage = staged(progress, f"swim at {frequency:g} Hz", *stage_bounds)
             records.append(simulate(runs, duration=(self.settle + self.cycles) / frequency, progress=stage))
         fastest_record = records[-1].isel(run=[0])
-        animals = own_size.swim_animals(
-            self.own_size, settle=self.settle, cycles=self.cycles,
-            progress=staged(progress, "animals of their own size", 0.7, 1.0),
-        )  # fmt: skip
-        full_record = fastest_record.merge(self._swims(records), combine_attrs="override", compat="no_conflicts").merge(
-            animals, combine_attrs="override", compat="no_conflicts"
-        )
+        full_record = fastest_record.merge(self._swims(records), combine_attrs="override", compat="no_conflicts")
+        if self.own_size:
+            animals = own_size.swim_animals(
+                self.own_size, settle=self.settle, cycles=self.cycles,
+                progress=staged(progress, "animals of their own size", 0.7, 1.0),
+            )  # fmt: skip
+            full_record = full_record.merge(animals, combine_attrs="override", compat="no_conflicts")
         return SimulationResult(record=full_record, replays=self._replays(full_record))
 
     def _swims(self, records: list[xr.Dataset]) -> xr.Dataset:
@@ -272,15 +276,17 @@ def draw_strides(record: xr.Dataset, animal: float) -> Figure:
         ax = axes[0, 0]
         ax.axhline(animal, color=COLOURS["neutral"], linewidth=1.2, linestyle=(0, (5, 2)), label="the animal, mean")
         ax.plot(frequency, stride, "o-", color=COLOURS["coordinated"], label="its angles on the model")
-        spread = [[stride[-1] - other_strides.min()], [other_strides.max() - stride[-1]]]
-        ax.errorbar(frequency[-1:], stride[-1:], yerr=spread, color=COLOURS["coordinated"], capsize=4)
+        if other_strides.size > 1:
+            spread = [[stride[-1] - other_strides.min()], [other_strides.max() - stride[-1]]]
+            ax.errorbar(frequency[-1:], stride[-1:], yerr=spread, color=COLOURS["coordinated"], capsize=4)
         ax.set(xlabel="frequency [Hz]", ylabel="stride [body lengths a cycle]")
         ax.set_ylim(0.0, 1.15 * max(animal, float(other_strides.max()), float(stride.max())))
         ax.legend(loc="lower left")
+    spread_text = " The bar is the spread over other coefficients of the water."
     return captioned(
         figure,
-        "How far the model comes in a cycle when it plays the swimming animal's joint angles, beside the animal. The "
-        "bar is the spread over other coefficients of the water.",
+        "How far the model comes in a cycle when it plays the swimming animal's joint angles, beside the animal."
+        f"{spread_text if other_strides.size > 1 else ''}",
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, pi
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 from warnings import warn
 
 import numpy as np
@@ -131,6 +131,10 @@ class SwimFree(Experiment):
     first settled cycle on."""
     spread: tuple[str, ...] = tuple(_COEFFICIENT_FACTORS)
     """Coefficients of the water that are varied."""
+    extent: Literal["whole", "verdicts"] = "whole"
+    """How much swims by sections: the whole, or the motions, the swim that steers and what the verdicts need. Then
+    joints are as they are, no swim is below the surface or at half the time step, and without varied coefficients the
+    speed in real water, whose range they give, is left out."""
     level: float = 2.0
     """Depth of the water [m]."""
     depth: float = 0.6
@@ -227,9 +231,9 @@ class SwimFree(Experiment):
             check.that(not unknown, f"spread names {', '.join(unknown)}; there is {', '.join(_COEFFICIENT_FACTORS)}")
 
     def for_verdicts(self) -> "SwimFree":
-        """Return the same question with swims as short as can answer."""
-        cycles = {name: int(least) for name, least in self.answer_minima.items()}
-        return replace(self, **{name: min(least, getattr(self, name)) for name, least in cycles.items()})
+        """Return the same question with swims as short as can answer, without those that are only compared."""
+        cycles = {name: min(int(least), getattr(self, name)) for name, least in self.answer_minima.items()}
+        return replace(self, **cycles, extent="verdicts", spread=())  # type: ignore[arg-type]
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
@@ -272,15 +276,17 @@ class SwimFree(Experiment):
         by_table = self._by_table(motion)
         runs = self._runs(motions, _ends(self.spread, by_table))
         record = simulate(runs, duration=self._duration, progress=staged(progress, "swims", 0.0, 0.7))
-        fine = simulate(
-            runs[:1],
-            duration=self._duration,
-            timestep=record.attrs["timestep"] / 2,
-            progress=staged(progress, "half the time step", 0.7, 0.8),
-        )
         models = self._models(motions)
-        record["fine_centre_of_mass"] = fine.centre_of_mass.isel(run=0, drop=True)
-        dive_records = self._dive_records(motion, staged(progress, "swims below the surface", 0.8, 1.0))
+        dive_records = []
+        if self.extent == "whole":
+            fine = simulate(
+                runs[:1],
+                duration=self._duration,
+                timestep=record.attrs["timestep"] / 2,
+                progress=staged(progress, "half the time step", 0.7, 0.8),
+            )
+            record["fine_centre_of_mass"] = fine.centre_of_mass.isel(run=0, drop=True)
+            dive_records = self._dive_records(motion, staged(progress, "swims below the surface", 0.8, 1.0))
         record = xr.merge(
             [record, models, *dive_records], join="exact", compat="no_conflicts", combine_attrs="override"
         )
@@ -368,6 +374,7 @@ class SwimFree(Experiment):
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
             for ending, robot in self._joints.items()
             for name, gait in motions.items()
+            if not ending or self.extent == "whole"
         ]
         steered_gait = _steered_gait(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))
@@ -407,15 +414,16 @@ class SwimFree(Experiment):
         labels = [str(label) for label in record.label.values]
         ghost = next(label for label in ("whole_stiff", "tail_only", "reversed") if label in labels)
         ghost_label = {"whole_stiff": "stiffer joints", "tail_only": "tail only", "reversed": "reversed wave"}[ghost]
+        is_stiff = ghost == "whole_stiff"
         return replayed(
             "swim_replay.html",
             record.isel(run=0),
             self.robot,
             ghost=record.isel(run=labels.index(ghost)),
-            labels=("joints as designed" if self._cable else "whole wave", ghost_label),
+            labels=("joints as designed" if is_stiff else "whole wave", ghost_label),
             title="Swimming in six degrees of freedom",
             caption=f"Swimming at the surface by a wave{', limbs held back' if self.robot.girdles else ''}; half "
-            f"transparent, with {'stiffer joints' if self._cable else f'the {ghost_label}'}.",
+            f"transparent, with {'stiffer joints' if is_stiff else f'the {ghost_label}'}.",
         )
 
     def measure(self, record: xr.Dataset) -> Measures:
@@ -438,21 +446,16 @@ class SwimFree(Experiment):
             for model in _MODELS:
                 value = float(record.model_speed.sel(motion=name, model=model))
                 measures[f"speed_{name}_{model}"] = Measure(value, "m/s")
-        waters = [value for label, value in speed.items() if " x " in label] + [speed["whole"]]
         absolute_speed, weight = abs(speed["whole"]), float(whole_swim.mass) * GRAVITY
         swing = float(np.ptp((whole_swim.tail_tip - whole_swim.centre_of_mass).sel(xyz="y").values))
-        fine = _settled_speed(record.fine_centre_of_mass, record).mean
         steered_start = _steered_start(record.isel(run=labels.index("steered")), record)
         steered_swim = _settled_cycles(record.isel(run=labels.index("steered")), steered_start)
         yaw = np.unwrap(rotation.yaw(whole_swim.orientation.values))
         measures |= (
             submerged.measures(record)
             | {
-                "speed_low": Measure(min(waters), "m/s"),
-                "speed_high": Measure(max(waters), "m/s"),
                 "cross_drag_by_table": Measure(record.attrs["cross_drag_by_table"], "-"),
                 "added_mass_by_table": Measure(record.attrs["added_mass_by_table"], "-"),
-                "step_change": Measure(abs(fine - speed["whole"]) / absolute_speed, "-"),
                 "roll_amplitude": Measure(float(np.abs(rotation.heel(whole_swim.orientation.values)).max()), "rad"),
                 "pitch": Measure(float(rotation.pitch(whole_swim.orientation.values).mean()), "rad"),
                 "yaw_amplitude": Measure(float(np.ptp(yaw)) / 2, "rad"),
@@ -483,12 +486,21 @@ class SwimFree(Experiment):
             | _shares(excerpts, record.attrs["cable"])
             | flow_measures(record)
         )
-        real_water = self.real_water_speed({name: measure.value for name, measure in measures.items()})
         measures |= {f"speed_{name}": Measure(speed[name], "m/s") for name in (SPREAD, FASTER) if name in speed}
         if SPREAD in speed:
             measures["gain_limbs_pressed"] = Measure(speed["whole"] / speed[SPREAD] - 1.0, "-")
         if FASTER in speed:
             measures["gain_faster_swings"] = Measure(speed[FASTER] / speed["whole"] - 1.0, "-")
+        if "fine_centre_of_mass" not in record:
+            return measures
+        fine = _settled_speed(record.fine_centre_of_mass, record).mean
+        waters = [value for label, value in speed.items() if " x " in label] + [speed["whole"]]
+        measures |= {
+            "speed_low": Measure(min(waters), "m/s"),
+            "speed_high": Measure(max(waters), "m/s"),
+            "step_change": Measure(abs(fine - speed["whole"]) / absolute_speed, "-"),
+        }
+        real_water = self.real_water_speed({name: measure.value for name, measure in measures.items()})
         return measures | {
             "speed_real_water": Measure(real_water.speed, "m/s"),
             "speed_real_water_low": Measure(real_water.low, "m/s"),
@@ -523,7 +535,8 @@ class SwimFree(Experiment):
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Say how fast it swims in real water first, then what its parts, its cable and the flow do."""
-        return self.render_explanation(measures, real_water=self.real_water_speed(measures))
+        real_water = self.real_water_speed(measures) if "speed_low" in measures else None
+        return self.render_explanation(measures, real_water=real_water)
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw the speeds beside the models', and how the joints of the cable share the bend."""
@@ -558,7 +571,13 @@ def _shares(excerpts: Mapping[str, xr.Dataset], cable: Sequence[str]) -> Measure
         cable: joints that cables bend.
     """
     ends = {"": "whole", "_stiff": "whole_stiff"} if cable else {}
-    return Measures({f"tail_spread{end}": Measure(_uneven(excerpts[name], cable), "-") for end, name in ends.items()})
+    return Measures(
+        {
+            f"tail_spread{end}": Measure(_uneven(excerpts[name], cable), "-")
+            for end, name in ends.items()
+            if name in excerpts
+        }
+    )
 
 
 def _ends(names: Sequence[str], by_table: Mapping[str, float]) -> dict[str, tuple[float, float]]:

@@ -18,7 +18,7 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
 
     Args:
         speeds: measures ``speed_MOTION``, ``speed_MOTION_stiff``, ``speed_MOTION_MODEL``, and the ends of the band,
-            ``speed_low`` and ``speed_high``.
+            ``speed_low`` and ``speed_high``, where it is known.
         motions: names of the motions.
         models: names of the models.
     """
@@ -35,22 +35,24 @@ def draw_speeds(speeds: Mapping[str, float], motions: Sequence[str], models: Seq
             positions = np.arange(len(motions)) + (i - (len(bars) - 1) / 2) * width
             values = [speeds[f"speed_{name}{ending}"] for name in motions]
             ax.bar(positions, values, width, color=colour, hatch=hatch, edgecolor="white", label=label)
-        nominal_speed, min_speed, max_speed = (speeds[name] for name in ("speed_whole", "speed_low", "speed_high"))
-        ax.errorbar(
-            -(len(bars) - 1) / 2 * width,
-            nominal_speed,
-            yerr=[[nominal_speed - min_speed], [max_speed - nominal_speed]],
-            color="#333333",
-            capsize=4,
-        )
+        if "speed_low" in speeds:
+            nominal_speed, min_speed, max_speed = (speeds[name] for name in ("speed_whole", "speed_low", "speed_high"))
+            ax.errorbar(
+                -(len(bars) - 1) / 2 * width,
+                nominal_speed,
+                yerr=[[nominal_speed - min_speed], [max_speed - nominal_speed]],
+                color="#333333",
+                capsize=4,
+            )
         ax.axhline(0.0, color=COLOURS["neutral"], linewidth=0.9)
         ax.set_xticks(range(len(motions)), [_MOTION_LABELS.get(name, name) for name in motions])
         ax.set_ylabel("speed [m/s]")
         ax.legend(loc="lower left")
+    spread_text = " The bar on the first is the spread over plausible coefficients of the water."
     return captioned(
         figure,
         "Speed of each motion, forward positive, in six degrees of freedom at the surface and by models whose midline "
-        "is commanded. The bar on the first is the spread over plausible coefficients of the water.",
+        f"is commanded.{spread_text if 'speed_low' in speeds else ''}",
     )
 
 

@@ -141,7 +141,8 @@ class PlaneSwims(Experiment):
     """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
     extent: Literal["whole", "verdicts"] = "whole"
     """How much swims: the whole, or what the verdicts need. Then neither other directions nor other readings of (20)
-    swim, and a rung of the ladder leaves out the swims of claims on which rungs before it disagree."""
+    swim, a rung of the ladder leaves out the swims of claims on which rungs before it disagree, and the straight body
+    is not towed, so that the efficiency is left out."""
     frames: int = 20
     """Pictures of each film, over one cycle [-], 1 to 200."""
     keep: str = ""
@@ -198,11 +199,12 @@ class PlaneSwims(Experiment):
             parts.insert(1, _prefixed(printed_forces, "printed"))
         parts.append(self._conditions(printed_fit, slices, staged(progress, "directions", 0.85, 0.92)))
         readings, table = self._readings(staged(progress, "readings of (20)", 0.92, 0.96))
-        drag = self._drag(float(free_swim.speed[-1]), staged(progress, "towed", 0.96, 1.0))
         record = xr.merge([*parts, readings, rungs], join="exact")
         record["model_speed"] = swim(self.robot, wave_fit.gait).speed
         record["printed_model_speed"] = swim(self.robot, printed_fit.gait).speed
-        record["towed_drag"] = ((), drag, {"units": "N/m"})
+        if is_whole:
+            drag = self._drag(float(free_swim.speed[-1]), staged(progress, "towed", 0.96, 1.0))
+            record["towed_drag"] = ((), drag, {"units": "N/m"})
         record["servo_limit"] = ("held_servo", [self.robot.servo(str(s)).torque for s in held_swim.servo.values])
         record.servo_limit.attrs["units"] = "N m"
         record.attrs |= {"misfit": wave_fit.misfit, **rungs.attrs}
@@ -439,10 +441,9 @@ def _free_swim(
         viscosity=frequency * robot.length**2 / reynolds,
     )  # fmt: skip
     yield from similar(numbers).items()
-    yield (
-        "efficiency",
-        Measure(efficiency(float(record.towed_drag), swim_result.speed, float(free_swim.power[-1])), "-"),
-    )
+    if "towed_drag" in record:
+        efficiency_of_swim = efficiency(float(record.towed_drag), swim_result.speed, float(free_swim.power[-1]))
+        yield "efficiency", Measure(efficiency_of_swim, "-")
     yield "water_cost_of_transport", Measure(swim_result.water_cost_of_transport, "-")
     yield "head_yaw", Measure(swim_result.head_yaw, "rad")
     for model in record.model.values:
