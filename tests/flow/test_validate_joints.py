@@ -344,7 +344,7 @@ def test_joints_that_servos_hold_on_their_course_swim_as_the_midline_that_is_giv
 
 
 @pytest.mark.xfail(
-    strict=True, raises=AssertionError, reason="2.5 % of the way and 1.8 % of the angles in November 2026"
+    strict=True, raises=AssertionError, reason="1.03 % of the way and 2.0 % of the angles in November 2026"
 )
 def test_joints_without_stiffness_are_hinges_of_free_links():
     """What differs in the way is half as much with a quarter of the physics' step.
