@@ -85,9 +85,7 @@ class TailController:
         wave = shared.trunk_bend - trunk_steady - 1j * (shared.trunk_direction - trunk_steady)
         follows = ratio.values * wave
         if not ratio.are_finite:
-            follows = np.where(
-                np.isfinite(ratio.values), follows, tail * gaits.axis_phase(shared.limb_phase, clock)
-            )
+            follows = np.where(np.isfinite(ratio.values), follows, tail * gaits.axis_phase(shared.limb_phase, clock))
         return shared.updated_by("tail", tail_bend=-steady - follows.real, tail_direction=-steady + follows.imag)
 
     def take_over(self, predecessor: "TailController") -> None:
