@@ -8,6 +8,7 @@ from typing import Any
 
 from evidence import (
     built,
+    complete_loads,
     converge,
     filmed_crawl,
     page_measures,
@@ -149,6 +150,10 @@ _OTHERS = (
     Kept(
         name="filmed_crawl", modules=("suchus.animals.capture", "suchus.sim.land"), compute=filmed_crawl.measured,
         probe=partial(filmed_crawl.measured, 1), renew="make renew NAME=filmed_crawl",
+    ),
+    Kept(
+        name=complete_loads.NAME, modules=("suchus.experiments.study", "suchus.sim.land"),
+        probe=partial(complete_loads.measured, 4, 2), renew="python -m evidence.complete_loads",
     ),
     Kept(name="converge", modules=converge.MODULES, probe=converge.probe, renew="make converge"),
     Kept(

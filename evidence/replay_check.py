@@ -9,7 +9,7 @@ of MuJoCo.
 """
 
 import sys
-from collections.abc import Mapping, MutableMapping, Sequence
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -398,11 +398,13 @@ def faults_of(robot: Robot) -> list[Fault]:
         "weak": {"fraction": 0.3},
     }  # fmt: skip
     persistences = (Persistence(), Persistence(duration=0.4), Persistence(rate=2.0, length=0.1, seed=1))
-    return [
-        kind(kind.parts(robot)[0], at=FAULT_TIME, persistence=persistence, **settings.get(name, {}))
-        for name, kind in suchus.FAULTS.items()
-        for persistence in (persistences[:1] if issubclass(kind, SensorFault) else persistences)
-    ]
+    found = []
+    for name, kind in suchus.FAULTS.items():
+        make: Callable[..., Fault] = kind
+        for persistence in persistences[:1] if issubclass(kind, SensorFault) else persistences:
+            part = kind.parts(robot)[0]
+            found.append(make(part, at=FAULT_TIME, persistence=persistence, **settings.get(name, {})))
+    return found
 
 
 def _suits(robot: Robot, gait: Any) -> bool:

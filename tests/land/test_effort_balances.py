@@ -97,16 +97,24 @@ def test_servos_heat_by_their_torque():
         assert by_torque == pytest.approx(by_temperature, rel=HEAT_TOLERANCE), run.label
 
 
-@pytest.mark.slow("a hundred designs and thirty foreign bodies: some minutes")
-class TestMany:
-    """The same of many robots."""
+MANY = pytest.mark.slow("a hundred designs and thirty foreign bodies: more than ten seconds")
 
-    def test_the_energy_is_balanced(self):
-        assert_balanced([*sampled_designs(100), *list(foreign_bodies(60))[::2]])
 
-    def test_the_work_hardly_depends_on_the_time_step(self):
-        assert_work_of_any_step([*sampled_designs(100), *list(foreign_bodies(60))[::2]])
+def many():
+    return [*sampled_designs(100), *list(foreign_bodies(60))[::2]]
 
-    def test_servos_heat_by_their_torque(self):
-        found = np.array([heats(run) for run in sampled_designs(100)])
-        assert np.abs(found[:, 1] / found[:, 0] - 1.0).max() < HEAT_TOLERANCE
+
+@MANY
+def test_the_energy_of_a_hundred_designs_is_balanced():
+    assert_balanced(many())
+
+
+@MANY
+def test_the_work_of_a_hundred_designs_hardly_depends_on_the_time_step():
+    assert_work_of_any_step(many())
+
+
+@MANY
+def test_the_servos_of_a_hundred_designs_heat_by_their_torque():
+    found = np.array([heats(run) for run in sampled_designs(100)])
+    assert np.abs(found[:, 1] / found[:, 0] - 1.0).max() < HEAT_TOLERANCE

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from suchus.core.errors import SuchusError
-from suchus.robot.design import layout
 from suchus.robot.design.scale import coarse_step, physics_step
 from suchus.robot.gaits import GAITS
 from suchus.robot.motion import START
@@ -16,9 +15,10 @@ from suchus.sim.metrics import cost_of_transport
 
 TIE = 0.04
 """Difference of two costs, over the smaller one, that is no order: each may change by 2 % with the time step [-]."""
-MAX_TIES = 0.15
+MAX_TIES = 0.2
 """Greatest fraction of the pairs of gaits that are ties, so that there is an order [-]."""
-WALKERS = [name for name, robot in ROBOTS.items() if layout(robot).limbs]
+OTHERS = ("floating_caiman", "long_tail", "salamander")
+"""Further robots of the catalog that have several gaits."""
 OWN_GAITS = ("limbs_only", "belly_crawl", "tail_still", "low_crawl", "spine_only", "semi_erect", "high_walk")
 """Gaits of the article's robot, the cheapest first, whose order is the same even where it is a tie."""
 
@@ -73,7 +73,7 @@ def exchanged(reference, others):
 
 def assert_same_order(reference, others):
     ties = [is_tie(reference, *pair) for pair in ordered_pairs(reference)]
-    assert not ties or np.mean(ties) < MAX_TIES
+    assert np.mean(ties) < MAX_TIES
     assert exchanged(reference, others) == []
 
 
@@ -94,8 +94,8 @@ def test_the_order_of_gaits_by_cost_is_that_of_a_foreign_body_too():
     assert_same_order(fine, [coarse, usual])
 
 
-@pytest.mark.slow("every body in every gait at a quarter of its time step takes a minute and a half")
-@pytest.mark.parametrize("name", sorted(set(WALKERS) - {"caiman", "pleurobot"}))
+@pytest.mark.slow("every body in every gait at a quarter of its time step: more than ten seconds")
+@pytest.mark.parametrize("name", OTHERS)
 def test_the_order_of_gaits_by_cost_of_every_body_does_not_depend_on_the_time_step(name):
     robot = ROBOTS[name]
     coarse, usual, fine = (costs(walks(robot, step)) for step in time_steps(robot))
