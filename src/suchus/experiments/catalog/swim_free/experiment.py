@@ -233,7 +233,7 @@ class SwimFree(Experiment):
     def for_verdicts(self) -> "SwimFree":
         """Return the same question with swims as short as can answer, without those that are only compared."""
         cycles = {name: min(int(least), getattr(self, name)) for name, least in self.answer_minima.items()}
-        return replace(self, **cycles, extent="verdicts", spread=())  # type: ignore[arg-type]
+        return replace(self, **cycles, extent="verdicts", spread=())
 
     def quick(self) -> "SwimFree":
         """Return the first cycle alone, coefficients as they are."""
