@@ -57,7 +57,7 @@ class ServoLaws:
         self.falling_torque = self.stall_torque / no_load_speed
         """Torque that a speed in its direction takes away, over that speed [N m s/rad]."""
         self.full_supply_damping = np.zeros(shape)
-        """What ``damping`` is while a servo has its full supply: its loop has no say there [N m s/rad]."""
+        """What ``damping`` is while a servo has its full supply, on which its loop has no influence [N m s/rad]."""
         self.is_implicit = np.ones(len(robots), dtype=bool)
         """Whether the physics of a run takes implicit steps, shape (run,)."""
         self.is_powered = np.ones(shape, dtype=bool)
@@ -78,7 +78,8 @@ class ServoLaws:
         self.limit[sim] = force_range[:, 1]
         loop_damping = np.where(self._is_motor, gain[:, _LOOP_DAMPING], -bias[:, _PID_DAMPING])
         acts = self.is_powered[sim] & self.is_implicit[sim]
-        self.damping[sim], self.full_supply_damping[sim] = loop_damping * acts, self.falling_torque[sim] * acts
+        self.damping[sim] = loop_damping * acts
+        self.full_supply_damping[sim] = np.where(self._is_motor, self.falling_torque[sim], loop_damping) * acts
         supply = gain[:, SUPPLY] / self._volts[sim]
         self.supplied_torque[sim] = self.stall_torque[sim] * np.where(np.isnan(supply), 1.0, supply)
 
