@@ -12,7 +12,8 @@ from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, section_motions
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Shape, check_positive
+from suchus.flow.shape import Axes, Field, Shape, check_positive
+from suchus.flow.solid import box_around, pieces_of_line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,9 +106,9 @@ class MidlineState:
 
     def in_world(self, pose: Pose) -> "MidlineState":
         """Return the midline in the world."""
-        x, y = pose.to_world(self.x, self.y)
-        vx, vy = pose.rotate_in_plane(self.x_rate, self.y_rate)
-        cx, cy = pose.velocity_in_plane(x, y)
+        x, y = pose.to_world((self.x, self.y))
+        vx, vy = pose.rotate((self.x_rate, self.y_rate))
+        cx, cy = pose.velocity_at((x, y))
         return replace(
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,
@@ -221,11 +222,12 @@ class Midline(Shape):
         spine = self.spine
         return spine.in_world(time, pose) if isinstance(spine, CachedMidline) else spine(time).in_world(pose)
 
-    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
-        midline = self._world_midline(time, pose)
+        (x, y), midline = points, self._world_midline(time, pose)
         h = (x[-1] - x[0]) / (x.size - 1)
-        field = Field(*paint(midline.rows, midline.half_width_rates, x[0], y[0], h, x.size, y.size, float(reach)))
+        fields = paint(midline.rows, midline.half_width_rates, x[0], y[0], h, x.size, y.size, float(reach))
+        field = Field(fields[0], (fields[1], fields[2]), (fields[3], fields[4]), fields[5])
         if self.cuts:
             field.part_index = self._nearest_parts(midline, x, y, field.distance < reach)
         return field
@@ -281,21 +283,18 @@ class Midline(Shape):
             part_index=part_index, station=s, side=side,
         )  # fmt: skip
 
-    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the rectangle around the outline."""
-        outline = ring(self._world_midline(time, pose).rows)
-        return (
-            float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
-        )  # fmt: skip
+        return box_around(ring(self._world_midline(time, pose).rows))
 
-    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
+    def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the midline without its round ends, where the half-width is larger than the distance to the tip."""
         midline = self._world_midline(time, pose)
         to_tip = np.minimum(midline.arc, midline.arc[-1] - midline.arc)
         slender_stations = np.flatnonzero(midline.half_width < to_tip)
         if slender_stations.size < 2:
             return None
-        return np.array([midline.x, midline.y])[:, slender_stations[0] : slender_stations[-1] + 1]
+        return pieces_of_line(np.array([midline.x, midline.y])[:, slender_stations[0] : slender_stations[-1] + 1])
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""

@@ -27,7 +27,6 @@ from suchus.flow.resolution import (
 )
 from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import NAMES, Periodic, Sides
-from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
 
@@ -340,7 +339,7 @@ class Setup:
         """
         length = extent(kernel_array(markers.points))
         speed = max_speed(kernel_array(markers.velocities), np.array(stream, float))
-        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
+        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), body.shape.is_compact
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),
             required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
@@ -369,7 +368,7 @@ class Setup:
         if self.coarse or error <= WARNING_FORCE_ERROR:
             return None
         cells, better = (
-            required_cells(target_error, is_compact=has_blunt_shape(body))
+            required_cells(target_error, is_compact=body.shape.is_compact)
             for target_error in (error, WARNING_FORCE_ERROR)
         )
         times = ceil(100 * better / cells) / 100
@@ -381,8 +380,3 @@ class Setup:
             kind="cells",
             size=error,
         )
-
-
-def has_blunt_shape(body: Body | FreeBody) -> bool:
-    """Return whether a body is a blunt one in space."""
-    return isinstance(body.shape, SpaceShape) and body.shape.is_compact

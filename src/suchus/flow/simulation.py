@@ -35,9 +35,8 @@ from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
 from suchus.flow.resolution import estimate_force_error
-from suchus.flow.setup import Setup, has_blunt_shape
-from suchus.flow.shape import Cylinder
-from suchus.flow.solid import Sphere
+from suchus.flow.setup import Setup
+from suchus.flow.solid import Cylinder, Sphere
 from suchus.flow.swimmer import Swimmer
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
@@ -503,7 +502,7 @@ class Simulation(Fields):
         gap = 2.5 * cell if law is None else law.gap
         tangential = [float(np.ptp(line)) for d, line in enumerate(outline.points) if d != wall.axis]
         weight = abs(self.swimmers[body.name].applied[wall.axis]) if law is None else 0.0
-        mass = (body.density or self.setup.density) * body.shape.mass(time).size  # type: ignore[union-attr]
+        mass = (body.density or self.setup.density) * body.shape.mass(time).volume  # type: ignore[union-attr]
         speed = self._fastest_approach(body.name, outline, wall)
         needed = (3.0 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
         if law is not None:
@@ -590,7 +589,7 @@ class Simulation(Fields):
         if not self._starts_at_once:
             return 0.0
         cells = float(np.sqrt(self.setup.viscosity * self.time)) / self.setup.grid.cell
-        return min(estimate_force_error(cells, is_compact=has_blunt_shape(body)), 1.0)
+        return min(estimate_force_error(cells, is_compact=body.shape.is_compact), 1.0)
 
     def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
