@@ -1,5 +1,6 @@
 """A body given by its midline and the half-width along it: fish, robots, foils."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from math import isfinite
@@ -119,20 +120,19 @@ MAX_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
 
-def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
+def check_cuts(cuts: tuple[float, ...]) -> None:
     """Refuse cuts that divide nothing.
 
     Args:
-        cuts: arc lengths at which a body is divided [m].
-        body_kind: what the body is called in messages.
+        cuts: arc lengths along a midline at which a body is divided [m].
 
     Raises:
         InvalidDesign: they do not rise from 0, or are too many.
     """
     if not all(isfinite(arc) for arc in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
-        raise InvalidDesign(f"the cuts of a {body_kind} are at {cuts} m; give rising arc lengths above 0.")
+        raise InvalidDesign(f"the cuts of a midline are at {cuts} m; give rising arc lengths above 0.")
     if len(cuts) >= MAX_PARTS:
-        raise InvalidDesign(f"a {body_kind} has {len(cuts)} cuts; up to {MAX_PARTS - 1} are allowed.")
+        raise InvalidDesign(f"a midline has {len(cuts)} cuts; up to {MAX_PARTS - 1} are allowed.")
 
 
 _STATE_NAMES = tuple(field.name for field in fields(MidlineState))
@@ -193,8 +193,8 @@ class CachedMidline:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Midline(Shape):
-    """A body that bends: its cross-sections stay straight and square to the midline."""
+class Spined(Shape):
+    """A body along a midline, in the plane or in space: its cross-sections stay straight and square to the midline."""
 
     spine: Callable[[float], MidlineState]
     """The midline at every time [s]."""
@@ -205,7 +205,8 @@ class Midline(Shape):
     [m]."""
 
     def __post_init__(self) -> None:
-        check_cuts(self.cuts, "midline")
+        """Refuse cuts that divide nothing."""
+        check_cuts(self.cuts)
 
     @property
     def rigid(self) -> bool:
@@ -216,6 +217,21 @@ class Midline(Shape):
     def parts(self) -> int:
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
+
+    @abstractmethod
+    def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+        """Return where the midline is at arc lengths, in the world, shape (point, axis) [m].
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+            arc: arc lengths of the points [m].
+        """
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Midline(Spined):
+    """A body in the plane that bends."""
 
     def _world_midline(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time in the world."""
@@ -253,7 +269,7 @@ class Midline(Shape):
         return part_index
 
     def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
+        """Return where the midline is at arc lengths, in the world, shape (point, 2) [m]; see ``Spined``."""
         midline = self._world_midline(time, pose)
         return np.column_stack([np.interp(arc, midline.arc, line) for line in (midline.x, midline.y)])
 

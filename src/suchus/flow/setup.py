@@ -16,7 +16,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.markers import Markers, extent, kernel_array, max_speed
-from suchus.flow.midline import Midline, check_state
+from suchus.flow.midline import Spined, check_state
 from suchus.flow.nest import patch_sides
 from suchus.flow.resolution import (
     MAX_FORCE_ERROR,
@@ -28,7 +28,6 @@ from suchus.flow.resolution import (
 from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import NAMES, Periodic, Sides
 from suchus.flow.swimmer import Swimmer
-from suchus.flow.trunk import Trunk
 
 MIN_LAYER_CELLS = required_cells(MAX_FORCE_ERROR)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
@@ -279,7 +278,7 @@ class Setup:
         """
         thin_fractions = {}
         for body in self.bodies:
-            if isinstance(body.shape, Midline | Trunk):
+            if isinstance(body.shape, Spined):
                 check_state(body.shape.spine(0.0), 0.0)
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
             pose = pose.in_dimensions(self.grid.ndim)

@@ -28,7 +28,7 @@ from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
-from suchus.flow.midline import CachedMidline, Midline
+from suchus.flow.midline import CachedMidline, Spined
 from suchus.flow.nest import Nested
 from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
@@ -38,7 +38,6 @@ from suchus.flow.resolution import estimate_force_error
 from suchus.flow.setup import Setup
 from suchus.flow.solid import Cylinder, Sphere
 from suchus.flow.swimmer import Swimmer
-from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
@@ -76,7 +75,7 @@ def _remembering(body: AnyBody, ndim: int) -> AnyBody:
         is_fixed = isinstance(body.motion, Pose)
         motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
         body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
-    if not isinstance(body.shape, Midline | Trunk):
+    if not isinstance(body.shape, Spined):
         return body
     shape = copy(body.shape)
     object.__setattr__(shape, "spine", CachedMidline(shape.spine))
@@ -202,7 +201,7 @@ class Simulation(Fields):
                 )  # fmt: skip
                 consistencies.append(Consistency(source, cell))
                 changing.append(not fixed)
-        if isinstance(body.shape, Midline | Trunk):
+        if isinstance(body.shape, Spined):
             midline = MidlineSource(body.name, body.shape.spine)
             consistencies.append(Consistency(midline, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(not body.shape.rigid)
@@ -677,9 +676,8 @@ class Simulation(Fields):
         for body in self._bodies:
             if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
                 body.motion.clear()
-            spine = getattr(body.shape, "spine", None)
-            if isinstance(spine, CachedMidline):
-                spine.clear()
+            if isinstance(body.shape, Spined) and isinstance(body.shape.spine, CachedMidline):
+                body.shape.spine.clear()
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the whole state, for ``restore``."""

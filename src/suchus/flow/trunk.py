@@ -1,7 +1,6 @@
 # ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
 """A body in space that is defined by its midline and the elliptic sections along it: fish, robots, fins."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,11 +9,11 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_trunk
-from suchus.flow.midline import MidlineState, check_cuts
+from suchus.flow.midline import MidlineState, Spined
 from suchus.flow.paint import ring
 from suchus.flow.pose import Pose
 from suchus.flow.sections import PAINTED_FIELDS, paint_sections, paint_turned_sections
-from suchus.flow.shape import Axes, Field, Shape
+from suchus.flow.shape import Axes, Field
 from suchus.flow.solid import box_around, open_grid
 
 _MIN_POINTS = 12
@@ -22,7 +21,7 @@ _MIN_POINTS = 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trunk(Shape):
+class Trunk(Spined):
     """A body whose midline bends in the plane z = 0; its sections are ellipses, square to the midline.
 
     A fin is a stretch whose half-heights are large and whose half-widths are small.
@@ -35,14 +34,8 @@ class Trunk(Shape):
     ndim: ClassVar[int] = 3
     mirror_symmetry: ClassVar[tuple[bool, ...]] = (False, False, True)
 
-    spine: Callable[[float], MidlineState]
-    """The midline as a function of the time [s], with the half-widths in its plane."""
     half_height: np.ndarray
     """Half of the height across the plane at each station, shape (station,) [m]."""
-    cuts: tuple[float, ...] = ()
-    """Arc lengths from the first station that divide the body into the parts of ``Record.part_series`` [m]."""
-    deforms: bool = True
-    """Whether the midline changes with time; False saves work."""
 
     def __post_init__(self) -> None:
         """Check the half-heights and the cuts."""
@@ -52,17 +45,7 @@ class Trunk(Shape):
                 f"the half-heights of a trunk have shape {heights.shape} and go from {heights.min():.4g} to "
                 f"{heights.max():.4g} m; give one row of finite numbers, none negative."
             )
-        check_cuts(self.cuts, "trunk")
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the shape never changes."""
-        return not self.deforms
-
-    @property
-    def parts(self) -> int:
-        """Parts that the cuts leave [-]."""
-        return len(self.cuts) + 1
+        Spined.__post_init__(self)
 
     def midline_and_frame(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
         """Return the midline at a time in the plane z = 0 of a frame, and the pose of that frame in the world.
@@ -219,13 +202,7 @@ class Trunk(Shape):
         return of_trunk(self._spine(time).rows, self.half_height)
 
     def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return points of the midline in the world frame, shape (point, 3) [m].
-
-        Args:
-            time: time [s].
-            pose: pose of the body's frame.
-            arc: arc lengths of the points [m].
-        """
+        """Return where the midline is at arc lengths, in the world, shape (point, 3) [m]; see ``Spined``."""
         spine, frame = self.midline_and_frame(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
         return np.column_stack(frame.to_world((x, y, 0 * x)))
