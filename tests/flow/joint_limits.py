@@ -193,9 +193,9 @@ def given_joints(swim, course):
         middle, drift = centre @ m / m.sum(), moving @ m / m.sum()
         (x, y), (u, v) = centre - middle[:, None], moving - drift[:, None]
         return Mass(
-            area=float(m.sum()) / density, centre=tuple(middle.tolist()), centre_rate=tuple(drift.tolist()),
-            moment=float((m * (x * x + y * y) + own).sum()) / density,
-            swirl=float((m * (x * v - y * u) + own * (turns @ rate)).sum()) / density,
+            volume=float(m.sum()) / density, centre=tuple(middle.tolist()), centre_rate=tuple(drift.tolist()),
+            moments=np.array([[float((m * (x * x + y * y) + own).sum()) / density]]),
+            swirl=(float((m * (x * v - y * u) + own * (turns @ rate)).sum()) / density,),
         )  # fmt: skip
 
     return GivenJoints(spine=spine, weighed=mass)

@@ -80,7 +80,7 @@ def test_a_free_eel_gets_the_momentum_that_the_water_gives():
     length; with nothing repaid it is five times as large.
     """
     record = flow.Simulation(eel_setup()).run(1.2, progress=False)
-    defect, got = momentum_defect(record, flow.eel(1.0).mass(0.0).area)
+    defect, got = momentum_defect(record, flow.eel(1.0).mass(0.0).volume)
     late = record.time > 0.45
     assert np.sqrt((defect[late] ** 2).mean(axis=0)).max() < 0.65 * np.ptp(got[late, 1])
 

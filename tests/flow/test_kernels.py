@@ -143,8 +143,9 @@ def test_no_path_from_cell_to_cell_crosses_a_closed_line(radii, turn):
     x, y = r * np.cos(angle) + 0.0137, r * np.sin(angle) + 0.0071  # or it may pass right through centres
     centre = (np.arange(n) - n / 2 + 0.5) * h
     across, along = np.ones((n, n + 1)), np.ones((n + 1, n))
-    close_faces(across, x, y, centre[0] - h, centre[0], h)
-    close_faces(along.T, y, x, centre[0] - h, centre[0], h)
+    pieces = np.stack([np.stack([x, y])[:, :-1], np.stack([x, y])[:, 1:]])
+    for c, passage in enumerate((across, along)):
+        close_faces(passage, c, pieces, centre[[0, 0]], h)
     wet = np.hypot(*np.meshgrid(centre, centre)) > 1.0
     for _ in range(n * n):
         more = wet.copy()

@@ -59,7 +59,7 @@ def test_the_volume_of_the_union_is_that_of_random_points():
 def test_distance_and_normal_are_those_of_the_nearest_piece():
     body, h = straight(), 0.01
     window = [np.arange(a, b, h) for a, b in ((0.2, 0.9), (-0.2, 0.2), (-0.02, 0.1))]
-    found = body.measure(*window, 0.0, flow.Pose(), 4 * h)
+    found = body.measure(window, 0.0, flow.Pose(), 4 * h)
     z, y, x = np.meshgrid(*window[::-1], indexing="ij")
     assert ((found.distance < 0) == inside(x, y, z))[np.abs(found.distance) > 1e-9].all()
     alone = np.hypot(y - 0.12, z) - 0.03
@@ -104,7 +104,7 @@ def test_attached_pieces_move_with_their_section():
     rate = (late.points - early.points) / (2 * dt)
     assert now.velocities[:, limbs] == pytest.approx(rate[:, limbs], abs=2e-4)
     field_at = now.points[:, limbs][:, 3]
-    found = body.measure(*(np.array([p, p + 0.01]) for p in field_at), time, pose, 0.05)
+    found = body.measure([np.array([p, p + 0.01]) for p in field_at], time, pose, 0.05)
     told = [float(part[0, 0, 0]) for part in found.velocity]
     assert told == pytest.approx(now.velocities[:, limbs][:, 3].tolist(), abs=1e-9)
     assert found.part_index[0, 0, 0] == 1  # that of its section

@@ -80,9 +80,9 @@ def test_a_piece_that_turns_about_its_joint_has_the_velocity_of_a_rigid_body():
         position=(0.05, -0.02, 0.01), angle=0.4, pitch=0.3, roll=-0.2, velocity=(0.1, 0.2, -0.3), spin_x=0.5,
         spin_y=-0.4, spin=0.3,
     )  # fmt: skip
-    found = body.measure(*window, time, pose, 4 * h)
+    found = body.measure(window, time, pose, 4 * h)
     z, y, x = np.meshgrid(*window[::-1], indexing="ij")
-    own = np.array(pose.to_body_3d((x, y, z)))
+    own = np.array(pose.to_body((x, y, z)))
     assert ((found.distance < 0) == inside(own.reshape(3, -1), time).reshape(x.shape)).all()
     rod = (found.part_index == 1) & (found.distance < 3 * h)
     assert rod.sum() > 100
@@ -94,7 +94,7 @@ def test_a_piece_that_turns_about_its_joint_has_the_velocity_of_a_rigid_body():
     ball = (found.part_index == 0) & (found.distance < 3 * h)
     assert np.array(found.velocity)[:, ball] == pytest.approx(np.array(pose.velocity_at((x, y, z)))[:, ball], abs=1e-12)
     skin = body.markers(time, pose, h)
-    seen = np.array(pose.to_body_3d(skin.points))
+    seen = np.array(pose.to_body(skin.points))
     turning = np.cross(axis, (seen - HINGE[:, None]).T).T
     expected = np.array(pose.velocity_at(skin.points)) + pose.matrix @ turning
     assert skin.velocities[:, skin.part_index == 1] == pytest.approx(expected[:, skin.part_index == 1], abs=1e-12)
@@ -114,7 +114,7 @@ def test_a_rod_of_a_link_is_the_capsule_of_a_trunk():
         motion=lambda _: states([0.6, 0.2, 0.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]),
     )
     window = [np.arange(a, b, 0.02) for a, b in ((0.4, 0.95), (0.1, 0.3), (-0.1, 0.1))]
-    both = [body.measure(*window, 0.0, flow.Pose(), 0.08) for body in (trunk, one)]
+    both = [body.measure(window, 0.0, flow.Pose(), 0.08) for body in (trunk, one)]
     near = (both[1].distance < 0.06) & (both[1].distance > -0.049)
     assert near.sum() > 500
     for name in ("distance", "thickness"):

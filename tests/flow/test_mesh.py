@@ -49,9 +49,9 @@ def window(shape, pose, n=40):
 def test_the_distance_of_a_box_is_exact_in_any_attitude():
     shape = of(BOX)
     x, y, z = window(shape, POSE)
-    found = shape.measure(x, y, z, 0.0, POSE, REACH)
+    found = shape.measure((x, y, z), 0.0, POSE, REACH)
     wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
-    exact = in_box(*(part.ravel() for part in POSE.to_body_3d((wx, wy, wz))), np.array([0.4, 0.15, 0.25])).reshape(
+    exact = in_box(*(part.ravel() for part in POSE.to_body((wx, wy, wz))), np.array([0.4, 0.15, 0.25])).reshape(
         wx.shape
     )
     near = np.abs(exact) < REACH
@@ -69,7 +69,7 @@ def test_the_distance_of_a_box_is_exact_in_any_attitude():
 def test_at_a_re_entrant_edge_inside_is_inside():
     shape = elbow()
     x, y, z = window(shape, UPRIGHT, 50)
-    found = shape.measure(x, y, z, 0.0, UPRIGHT, 0.12).distance
+    found = shape.measure((x, y, z), 0.0, UPRIGHT, 0.12).distance
     wz, wy, wx = np.meshgrid(z, y, x, indexing="ij")
     inside = (np.abs(wz) < 0.1) & (wx > 0) & (wy > 0) & (((wx < 0.6) & (wy < 0.2)) | ((wx < 0.2) & (wy < 0.6)))
     np.testing.assert_array_equal(found < 0, inside)
@@ -83,7 +83,7 @@ def test_inside_a_crooked_body_is_negative_and_outside_positive(seed):
     mesh.vertices *= rng.uniform(0.4, 1.3, (len(mesh.vertices), 1))
     shape = of(mesh)
     x, y, z = (np.linspace(-0.7, 0.7, 9) + shift for shift in rng.uniform(-0.05, 0.05, 3))
-    found = shape.measure(x, y, z, 0.0, UPRIGHT, 2.0).distance
+    found = shape.measure((x, y, z), 0.0, UPRIGHT, 2.0).distance
     points = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1).reshape(-1, 3)
     a, b, c = (mesh.triangles[:, k] - points[:, None] for k in range(3))
     la, lb, lc = (np.linalg.norm(one, axis=2) for one in (a, b, c))
@@ -109,7 +109,7 @@ def test_mass_and_skin_are_those_of_the_mesh(mesh):
     np.testing.assert_allclose(facing.sum(axis=1), 0.0, atol=1e-12)
     assert (facing * skin.points).sum() / 3 == pytest.approx(moved.volume)
     np.testing.assert_allclose(skin.velocities, np.stack(POSE.velocity_at(skin.points)), atol=1e-12)
-    off = shape.measure(*(np.array([p, p + 1e-3]) for p in skin.points[:, 7]), 0.0, POSE, 0.1).distance[0, 0, 0]
+    off = shape.measure([np.array([p, p + 1e-3]) for p in skin.points[:, 7]], 0.0, POSE, 0.1).distance[0, 0, 0]
     assert abs(off) < 1e-12
 
 
@@ -150,7 +150,7 @@ def test_what_a_function_says_is_inside_becomes_a_body_in_space():
     assert shape.volume(0.0) == pytest.approx(exact.volume(0.0), rel=2e-3)
     np.testing.assert_allclose(shape.mass(0.0).moments, exact.mass(0.0).moments, rtol=4e-3, atol=1e-6)
     x, y, z = window(exact, POSE)
-    (found, true), reach = (one.measure(x, y, z, 0.0, POSE, 0.05).distance for one in (shape, exact)), 0.05
+    (found, true), reach = (one.measure((x, y, z), 0.0, POSE, 0.05).distance for one in (shape, exact)), 0.05
     near = np.abs(true) < reach
     np.testing.assert_allclose(found[near], true[near], atol=5e-4)
     ring = flow.from_sdf(lambda x, y, z: (np.hypot(x, y) - 0.5) ** 2 + z**2 - 0.04, (-0.8, 0.8, -0.8, 0.8, -0.3, 0.3))

@@ -171,8 +171,8 @@ def test_a_shape_in_any_attitude_is_the_upright_one_seen_from_another_side(name)
     matrix, still = TURNED.matrix, flow.Pose(position=(0.0, 0.0, 0.0))
     reached = 0
     for point in near(shape, TURNED, h):
-        here, there = ([np.array([at, at + h]) for at in p] for p in (point, TURNED.to_body_3d(point)))
-        found, wanted = shape.measure(*here, 0.4, TURNED, 3 * h), shape.measure(*there, 0.4, still, 3 * h)
+        here, there = ([np.array([at, at + h]) for at in p] for p in (point, TURNED.to_body(point)))
+        found, wanted = shape.measure(here, 0.4, TURNED, 3 * h), shape.measure(there, 0.4, still, 3 * h)
         at = (0, 0, 0)
         distance = float(wanted.distance[at])
         if abs(distance) > 2.9 * h:
@@ -215,7 +215,7 @@ def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():
     shape, h = eel(cuts=(0.4,)), 1 / 32
     window = [np.arange(low, high, h) for low, high in ((-0.2, 1.2), (-0.3, 0.3), (-0.15, 0.15))]
     upright = flow.Pose(position=(0.05, 0.0, 0.01), angle=0.3, velocity=(0.1, 0.2, 0.3), spin=0.5)
-    one, other = (shape.measure(*window, 0.4, pose, 4 * h) for pose in (upright, replace(upright, roll=1e-9)))
+    one, other = (shape.measure(window, 0.4, pose, 4 * h) for pose in (upright, replace(upright, roll=1e-9)))
     reached = np.abs(one.distance) < 3.5 * h
     assert reached.sum() > 500
     assert np.abs(one.distance - other.distance)[reached].max() < 1e-7
@@ -228,7 +228,7 @@ def test_a_trunk_that_hardly_tilts_is_painted_as_the_upright_one():
 @given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3), st.tuples(*[st.floats(-2, 2)] * 3))
 def test_a_pose_sees_the_points_that_it_places(yaw, pitch, roll, point):
     pose = flow.Pose(position=(0.1, 0.2, 0.3), angle=yaw, pitch=pitch, roll=roll)
-    assert pose.to_body_3d(pose.to_world_3d(point)) == pytest.approx(point, abs=1e-12)
+    assert pose.to_body(pose.to_world(point)) == pytest.approx(point, abs=1e-12)
     assert pose.matrix == pytest.approx(Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix(), abs=1e-12)
 
 
@@ -238,7 +238,7 @@ def test_the_tensor_of_inertia_is_that_of_what_the_body_fills(shape):
     time, h = 0.9, 0.012
     low, high = np.array(shape.bounds(time, flow.Pose(position=(0.0, 0.0, 0.0)))).reshape(3, 2).T
     window = [np.arange(a - 0.05, b + 0.05, h) for a, b in zip(low, high, strict=True)]
-    inside = shape.measure(*window, time, flow.Pose(position=(0.0, 0.0, 0.0)), 2 * h).distance < 0
+    inside = shape.measure(window, time, flow.Pose(position=(0.0, 0.0, 0.0)), 2 * h).distance < 0
     z, y, x = np.meshgrid(*window[::-1], indexing="ij")
     points = np.stack([x[inside], y[inside], z[inside]])
     mass, middle = shape.mass(time), points.mean(axis=1)

@@ -293,11 +293,11 @@ def test_an_ellipsoid_knows_the_distance_of_every_point(axes, direction, far):
     reach = max(far, -0.9) * (bend if far < 0 else 1.0)
     lines = [np.array([at]) for at in foot + reach * normal]
     still = flow.Pose(position=(0.0, 0.0, 0.0))
-    found = shape.measure(*lines, 0.0, still, np.inf)
+    found = shape.measure(lines, 0.0, still, np.inf)
     assert found.distance.item() == pytest.approx(reach, abs=1e-7)
     if np.abs(direction).min() > 1e-3:
         assert [part.item() for part in found.normal] == pytest.approx(normal, abs=1e-5)
-    short = shape.measure(*lines, 0.0, still, 0.5 * abs(reach)).distance.item()  # beyond its reach, but never nearer
+    short = shape.measure(lines, 0.0, still, 0.5 * abs(reach)).distance.item()  # beyond its reach, but never nearer
     assert 0.5 * abs(reach) - 1e-7 <= short * np.sign(reach) <= abs(reach) + 1e-7
 
 
@@ -305,12 +305,12 @@ def test_an_ellipsoid_knows_how_thick_it_is():
     """Behind its flat faces, and at its rim, where it is the chord a cell inside; a thick one is thick everywhere."""
     still, h = flow.Pose(position=(0.0, 0.0, 0.0)), 0.05
     line, middle = np.arange(-12, 13) * h, 12
-    disc = flow.Ellipsoid(length=1.0, width=1.0, height=0.08).measure(line, line, line, 0.0, still, 3 * h)
+    disc = flow.Ellipsoid(length=1.0, width=1.0, height=0.08).measure((line, line, line), 0.0, still, 3 * h)
     assert disc.thickness[middle + 1, middle, middle] == pytest.approx(0.08)
     inside = 0.04  # less than a cell: as far as it is thick
     rim = 0.08 * np.sqrt(1 - ((0.5 - inside) / 0.5) ** 2)
     assert disc.thickness[middle, middle, middle + 11] == pytest.approx(rim)
-    ball = flow.Sphere(diameter=MIN_THICKNESS * h).measure(line, line, line, 0.0, still, 3 * h)
+    ball = flow.Sphere(diameter=MIN_THICKNESS * h).measure((line, line, line), 0.0, still, 3 * h)
     beyond = -(ball.thickness + ball.distance) / h  # from the other surface: no part of it is felt
     assert beyond.max() < -1.0
 
@@ -432,7 +432,7 @@ HALF = flow.Grid(cells=(24, 24, 12), cell=1 / 8, origin=(-1.5, -1.5, 0.0))
             ),
             "a shape in space, and the grid has two axes",
         ),
-        (lambda: flow.FreeBody(shape=1.0), "a Shape or a SpaceShape is needed"),
+        (lambda: flow.FreeBody(shape=1.0), "a Shape is needed"),
         (
             lambda: ball(mirrors=(False, False, True)).control(0.1),
             "a mirror cuts body, and a control volume goes all around bodies",

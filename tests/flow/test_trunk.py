@@ -70,7 +70,7 @@ POSE = flow.Pose(position=(0.05, -0.02, 0.03), angle=0.4, velocity=(0.3, 0.2, 0.
 def test_a_trunk_with_the_sections_of_an_ellipsoid_is_one(axes):
     h, exact = 1 / 20, flow.Ellipsoid(length=axes[0], width=axes[1], height=axes[2])
     window = points(h, 1.3, 1.0, 0.7)
-    ours, theirs = (shape.measure(*window, 0.0, POSE, 4 * h) for shape in (egg(*axes), exact))
+    ours, theirs = (shape.measure(window, 0.0, POSE, 4 * h) for shape in (egg(*axes), exact))
     near = (np.abs(theirs.distance) < 3 * h) & (theirs.distance > -h)
     round_ = axes[1] == axes[2]
     assert near.sum() > 1000
@@ -94,7 +94,7 @@ def test_a_trunk_of_constant_section_is_a_cylinder_with_flat_ends(x, y, z):
     radius, reach = 0.2, 0.25
     trunk = rod(np.linspace(0.0, 1.0, 41), np.full(41, radius), np.full(41, radius))
     lines = [np.array([at, at + 0.05]) for at in (x, y, z)]
-    found = float(trunk.measure(*lines, 0.0, flow.Pose(), reach).distance[0, 0, 0])
+    found = float(trunk.measure(lines, 0.0, flow.Pose(), reach).distance[0, 0, 0])
     out = np.array([np.hypot(y, z) - radius, abs(x - 0.5) - 0.5])
     exact = min(out.max(), 0.0) + np.hypot(*np.maximum(out, 0.0))
     if abs(exact) < reach:
@@ -111,7 +111,7 @@ def test_the_volume_of_a_bent_trunk_is_what_it_fills():
     spine = trunk.spine(time)
     window = [np.arange(low - 0.1, high + 0.1, h) for low, high in
               ((spine.x.min(), spine.x.max()), (spine.y.min(), spine.y.max()), (0.0, 0.0))]  # fmt: skip
-    inside = trunk.measure(*window, time, flow.Pose(), 2 * h).distance < 0
+    inside = trunk.measure(window, time, flow.Pose(), 2 * h).distance < 0
     _, y, x = np.meshgrid(*window[::-1], indexing="ij")
     mass, filled = trunk.mass(time), inside.sum() * h**3
     centre = x[inside].mean(), y[inside].mean()
@@ -136,7 +136,7 @@ def test_the_wall_moves_with_the_velocity_that_it_tells():
     some = slice(40, None, 97)
     for point, velocity in zip(now.points.T[some], now.velocities.T[some], strict=True):
         window = [np.array([at, at + 0.02]) for at in point]
-        field = trunk.measure(*window, 0.3, pose(0.3), 0.1)
+        field = trunk.measure(window, 0.3, pose(0.3), 0.1)
         assert abs(field.distance[0, 0, 0]) < 1e-3
         assert [part[0, 0, 0] for part in field.velocity] == pytest.approx(velocity, abs=2e-3)
 
@@ -343,7 +343,7 @@ def test_a_fin_that_ends_in_an_edge_is_painted_beside_itself_alone():
     s = np.linspace(0.0, 1.0, STATIONS)
     shape, h = rod(s, 0.05 * (1 - s), np.full(s.size, 0.05)), 1 / 40
     x, y, z = points(h, 0.2, 0.5, 0.1)
-    found = shape.measure(x + 0.98, y, z, 0.0, flow.Pose(position=(0.0, 0.0, 0.0)), 3 * h)
+    found = shape.measure((x + 0.98, y, z), 0.0, flow.Pose(position=(0.0, 0.0, 0.0)), 3 * h)
     beside = np.hypot(y[None, :, None], np.maximum(np.abs(z)[:, None, None] - 0.05, 0.0)) - 0.01
     far = np.broadcast_to(beside, found.distance.shape) > 3.2 * h
     assert far.sum() > 100

@@ -42,7 +42,7 @@ from suchus.flow.compiled import PAD
 from suchus.flow.force import interpolate, padded, steps_of
 from suchus.flow.immerse import fill_source
 from suchus.flow.nest import Nested
-from suchus.flow.solid import SpaceField, SpaceShape
+from suchus.flow.shape import Field, Shape
 from suchus.flow.water import Fluid
 
 GAP = 2.0
@@ -189,13 +189,16 @@ class LayeredNested(Layered, Nested):
         coarse.source[:] = net[coarse.window_slices]
 
 
-class Column(SpaceShape):
+class Column(Shape):
     """A round cylinder along z that goes on beyond the domain; two mirrors cut it."""
+
+    ndim = 3
 
     def __init__(self, *, diameter):
         self.diameter = diameter
 
-    def measure(self, x, y, z, time, pose, reach):
+    def measure(self, points, time, pose, reach):
+        x, y, z = points
         away_y, away_x = np.meshgrid(y - pose.position[1], x - pose.position[0], indexing="ij")
         r = np.maximum(np.hypot(away_x, away_y), 1e-9)
         shape = (z.size, *r.shape)
@@ -205,7 +208,7 @@ class Column(SpaceShape):
 
         distance, nx, ny = map(everywhere, (r - 0.5 * self.diameter, away_x / r, away_y / r))
         velocity = tuple(np.full(shape, part) for part in (*pose.velocity, 0.0)[:3])
-        return SpaceField(distance, (nx, ny, np.zeros(shape)), velocity, np.full(shape, np.inf))
+        return Field(distance, (nx, ny, np.zeros(shape)), velocity, np.full(shape, np.inf))
 
     def markers(self, time, pose, spacing):
         count = max(8, round(np.pi * self.diameter / spacing))

@@ -16,8 +16,6 @@ import numpy as np
 
 FORMER_NAMES: dict[str, dict[str, str]] = {
     "BendingMap": {"map_to_rest": "back", "difference_time": "tick"},
-    "BentMesh": {"rest_shape": "still"},
-    "BentOutline": {"rest_shape": "still"},
     "Capsule": {"arc_position": "at"},
     "LinkPiece": {"position": "at", "quaternion": "turn"},
     "Setup": {"coarse_grid": "around"},

@@ -9,7 +9,7 @@ Start reading with ``flow.setup``, then ``flow.simulation``.
 from suchus.core.isosurface import IsoSurface, isosurface
 from suchus.flow.added import added_mass
 from suchus.flow.batch import batch
-from suchus.flow.bent import BentMesh, BentOutline, bend_shape
+from suchus.flow.bent import Bent, bend_shape
 from suchus.flow.body import Body
 from suchus.flow.contact import BodyContact
 from suchus.flow.eel import eel, eel_in_space
@@ -21,7 +21,7 @@ from suchus.flow.limbed import Capsule, Limbed
 from suchus.flow.linked import Linked, LinkPiece, LinkStates, Spherocylinder
 from suchus.flow.log import FlowLoads
 from suchus.flow.markers import Markers
-from suchus.flow.mass import Mass, SpaceMass
+from suchus.flow.mass import Mass
 from suchus.flow.mesh import TriangleMesh, from_mesh
 from suchus.flow.midline import Midline, MidlineState, foil
 from suchus.flow.outline import Implicit, Polygon, difference, from_outline, from_sdf, scaled, union
@@ -32,11 +32,11 @@ from suchus.flow.record import Coefficients, Record
 from suchus.flow.resolution import ALONG_THE_SKIN
 from suchus.flow.scheme import CENTRAL, QUICK, UPWIND, Scheme
 from suchus.flow.setup import Setup
-from suchus.flow.shape import Cylinder, Ellipse, Field, Plate, Shape, Solid
+from suchus.flow.shape import Field, Shape
 from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
-from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape, Sphere
+from suchus.flow.solid import Cylinder, Ellipse, Ellipsoid, PlaneSolid, Plate, Skin, Solid, Sphere
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
@@ -49,8 +49,7 @@ __all__ = [
     "QUICK",
     "SHU_OSHER",
     "UPWIND",
-    "BentMesh",
-    "BentOutline",
+    "Bent",
     "Body",
     "BodyContact",
     "Capsule",
@@ -82,6 +81,7 @@ __all__ = [
     "Oscillation",
     "Outflow",
     "Periodic",
+    "PlaneSolid",
     "Plate",
     "Polygon",
     "Pose",
@@ -94,11 +94,9 @@ __all__ = [
     "Side",
     "Sides",
     "Simulation",
+    "Skin",
     "Slip",
     "Solid",
-    "SpaceField",
-    "SpaceMass",
-    "SpaceShape",
     "Sphere",
     "Spherocylinder",
     "Stage",

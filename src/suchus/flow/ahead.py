@@ -16,9 +16,8 @@ from suchus.flow import compiled, poisson
 from suchus.flow.body import Body
 from suchus.flow.grid import Grid
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Cylinder
 from suchus.flow.sides import Sides
-from suchus.flow.solid import Sphere
+from suchus.flow.solid import Cylinder, Sphere
 from suchus.flow.water import Fluid
 
 _CELLS = 32

@@ -7,22 +7,23 @@ velocity follows by differentiation: a place of the still shape stays what it is
 map's gradient J. So no rate can be given that is not that of the places.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import isfinite
-from typing import Any, overload
+from typing import ClassVar
 
 import numpy as np
 
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
-from suchus.flow.mass import Mass, SpaceMass, of_outline
-from suchus.flow.mesh import TriangleMesh, face_centres, mass_of_mesh, paint_mesh, point_text, pseudo_normals
-from suchus.flow.paint import paint_outline
-from suchus.flow.pose import Pose, rotate_vectors
-from suchus.flow.shape import Field, Shape, Solid
-from suchus.flow.solid import SpaceField, SpaceShape
+from suchus.flow.mass import Mass, of_outline
+from suchus.flow.mesh import TriangleMesh, face_centres, mass_of_mesh, paint_triangles, point_text, pseudo_normals
+from suchus.flow.outline import paint_polygon
+from suchus.flow.pose import ROTATION_PLANES, Pose
+from suchus.flow.shape import Axes, Field, Shape
+from suchus.flow.solid import PlaneSolid, box_around, rigid_velocity, skin_spins
 
 CORNERS = 512
 """Least number of corners of the polygon that approximates the outline of a plane shape [-]."""
@@ -167,206 +168,205 @@ class BendingMap:
         return full_tick_velocity
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BentOutline(Shape):
-    """A plane shape that a map bends; see ``bend_shape``."""
+class Facets(ABC):
+    """The flat pieces that bound a still shape: edges of an outline, or triangles of a mesh.
 
-    rest_shape: Solid
-    """The shape that it bends."""
-    bend: BendingMap
-    """The map."""
-    _corners: np.ndarray = field(init=False, repr=False)
+    Corners are given in the body's frame, shape (axis, corner) [m], those of the still shape or where it has bent to.
+    """
 
-    def __post_init__(self) -> None:
-        object.__setattr__(
-            self, "_corners", np.stack([np.array(row, float) for row in self.rest_shape.outline(CORNERS)])
-        )
+    shape: PlaneSolid | TriangleMesh
+    """The still shape."""
+    still_corners: np.ndarray
+    """Corners of the still shape."""
 
-    @property
-    def rigid(self) -> bool:
-        """It bends."""
-        return False
+    @abstractmethod
+    def paint(self, corners: np.ndarray, points: Axes, reach: float) -> np.ndarray:
+        """Return signed distance and normal on a window, shape (1 + axis, ...) [m, -].
 
-    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
-        """Return the field on the points of a window, as far as ``reach``."""
-        h = float(x[-1] - x[0]) / (x.size - 1)
-        corners = np.stack(pose.to_world(*_bent_corners(self, time)))
-        flat = 1e-9 * self.bend.size
-        d, nx, ny = paint_outline(corners, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), flat)
-        wx, wy = np.meshgrid(x, y)
-        vx, vy = (np.array(np.broadcast_to(v, d.shape)) for v in pose.velocity_in_plane(wx, wy))
-        is_near = d < reach
-        bend_velocity = pose.rotate_in_plane(
-            *self.bend.velocity(np.stack(pose.to_body(wx[is_near], wy[is_near])), time)
-        )
-        vx[is_near] += bend_velocity[0]
-        vy[is_near] += bend_velocity[1]
-        return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
+        Args:
+            corners: the corners, in the frame of the window.
+            points: coordinates of the window along each axis [m].
+            reach: distance up to which both are exact [m].
+        """
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of the outline's edges."""
-        corners = _bent_corners(self, time)
+    @abstractmethod
+    def mass(self, corners: np.ndarray) -> Mass:
+        """Return volume, centre and moments of what the pieces enclose, as if it were rigid."""
+
+    @abstractmethod
+    def quadrature(self, corners: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return points, shape (axis, point) [m], and weights with which linear functions times arms are integrated.
+
+        Args:
+            corners: the corners.
+            centre: point from which each piece is seen, shape (axis, 1) [m].
+        """
+
+    @abstractmethod
+    def markers(self, bend: BendingMap, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return markers over the bent pieces in the world, about ``spacing`` [m] apart."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edges(Facets):
+    """The edges of an outline in the plane."""
+
+    shape: PlaneSolid
+    still_corners: np.ndarray
+
+    @classmethod
+    def of_outline(cls, shape: PlaneSolid) -> "Edges":
+        """Return the edges of a shape's outline, at least ``CORNERS``."""
+        return cls(shape, np.stack([np.array(line, float) for line in shape.outline(CORNERS)]))
+
+    def paint(self, corners: np.ndarray, points: Axes, reach: float) -> np.ndarray:
+        """Return signed distance and normal on a window; see ``Facets``."""
+        return paint_polygon(corners, points, reach, 1e-9 * _extent(self.still_corners))
+
+    def mass(self, corners: np.ndarray) -> Mass:
+        """Return area, centre and moment of the polygon; see ``Facets``."""
+        return of_outline(*corners)
+
+    def quadrature(self, corners: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the middles of the sides of each edge's triangle from the centre; see ``Facets``."""
+        next_corners = np.roll(corners, -1, axis=1)
+        arms, next_arms = corners - centre, next_corners - centre
+        share = (arms[0] * next_arms[1] - arms[1] * next_arms[0]) / 6  # a third of each triangle from the centre
+        sides = [0.5 * (corners + centre), 0.5 * (next_corners + centre), 0.5 * (corners + next_corners)]
+        return np.concatenate(sides, axis=1), np.tile(share, 3)
+
+    def markers(self, bend: BendingMap, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return the middles of the outline's edges; see ``Facets``."""
+        corners = bend.map_to_bent(self.still_corners, time)
         perimeter = float(np.hypot(*(np.roll(corners, -1, axis=1) - corners)).sum())
-        still_points = np.stack(
-            [np.array(row, float) for row in self.rest_shape.outline(max(32, int(np.ceil(perimeter / spacing))))]
-        )
-        vertices = self.bend.map_to_bent(still_points, time)
-        rates = self.bend.check(vertices, time)
+        outline = self.shape.outline(max(32, int(np.ceil(perimeter / spacing))))
+        vertices = bend.map_to_bent(np.stack([np.array(line, float) for line in outline]), time)
+        rates = bend.check(vertices, time)
         next_vertices, next_rates = np.roll(vertices, -1, axis=1), np.roll(rates, -1, axis=1)
         edges, rate_change = next_vertices - vertices, next_rates - rates
         edge_lengths = np.hypot(*edges)
-        points = np.stack(pose.to_world(*(0.5 * (vertices + next_vertices))))
-        velocities = np.stack(pose.velocity_in_plane(*points)) + np.stack(
-            pose.rotate_in_plane(*(0.5 * (rates + next_rates)))
-        )
+        points = np.stack(pose.to_world(0.5 * (vertices + next_vertices)))
+        velocities = np.stack(pose.velocity_at(points)) + np.stack(pose.rotate(0.5 * (rates + next_rates)))
         return Markers(
             points=points, weight=edge_lengths, velocities=velocities,
-            normals=np.stack(pose.rotate_in_plane(*(np.stack([edges[1], -edges[0]]) / edge_lengths))),
+            normals=np.stack(pose.rotate(np.stack([edges[1], -edges[0]]) / edge_lengths)),
             spins=(pose.spin + (edges[0] * rate_change[1] - edges[1] * rate_change[0]) / edge_lengths**2)[None],
             station=np.cumsum(edge_lengths) - edge_lengths / 2, side=np.zeros(edge_lengths.size),
         )  # fmt: skip
 
-    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
-        """Return the rectangle around the corners."""
-        x, y = pose.to_world(*_bent_corners(self, time))
-        return float(x.min()), float(x.max()), float(y.min()), float(y.max())
 
-    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return that of the still shape."""
-        return self.rest_shape.thickness(0.0)
+@dataclass(frozen=True, slots=True, eq=False)
+class Triangles(Facets):
+    """The triangles of a closed mesh in space."""
 
-    def mass(self, time: float) -> Mass:
-        """Return area, centre and moments of the corners' polygon, and the momentum of what bends in it."""
-        corners = _bent_corners(self, time)
-        polygon = of_outline(*corners)
-        centre = np.array(polygon.centre)[:, None]
-        next_corners = np.roll(corners, -1, axis=1)
-        arms, next_arms = corners - centre, next_corners - centre
-        share = (arms[0] * next_arms[1] - arms[1] * next_arms[0]) / 6  # a third of each triangle from the centre
-        quadrature_points = np.concatenate(
-            [0.5 * (corners + centre), 0.5 * (next_corners + centre), 0.5 * (corners + next_corners)], axis=1
-        )
-        weights, rates = np.tile(share, 3), self.bend.velocity(quadrature_points, time)
-        rate = (rates * weights).sum(axis=1) / polygon.area
-        (dx, dy), (u, v) = quadrature_points - centre, rates - rate[:, None]
-        return Mass(
-            area=polygon.area, centre=polygon.centre, centre_rate=(float(rate[0]), float(rate[1])),
-            moment=polygon.moment, swirl=float(((dx * v - dy * u) * weights).sum()),
+    shape: TriangleMesh
+    still_corners: np.ndarray
+
+    @classmethod
+    def of_mesh(cls, mesh: TriangleMesh) -> "Triangles":
+        """Return the triangles of a mesh."""
+        return cls(mesh, mesh.vertices.T)
+
+    def paint(self, corners: np.ndarray, points: Axes, reach: float) -> np.ndarray:
+        """Return signed distance and normal on a window; see ``Facets``."""
+        faces = self.shape.faces
+        normals = np.ascontiguousarray(pseudo_normals(corners.T, faces))
+        return paint_triangles(corners, faces, normals, points, reach)
+
+    def mass(self, corners: np.ndarray) -> Mass:
+        """Return volume, centre and moments of the mesh; see ``Facets``."""
+        return mass_of_mesh(corners.T[self.shape.faces])
+
+    def quadrature(self, corners: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return four points in each triangle's tetrahedron from the centre; see ``Facets``."""
+        arms = corners.T[self.shape.faces].transpose(1, 2, 0) - centre
+        share = np.einsum("df,df->f", arms[0], np.cross(arms[1], arms[2], axis=0)) / 24
+        corner_weight, other_weight = _TETRAHEDRON
+        total = arms.sum(axis=0)
+        points = [other_weight * total, *(other_weight * total + (corner_weight - other_weight) * arm for arm in arms)]
+        return np.concatenate(points, axis=1) + centre, np.tile(share, 4)
+
+    def markers(self, bend: BendingMap, time: float, pose: Pose, spacing: float) -> Markers:
+        """Return the middles of the triangles, of large ones those of equal parts; see ``Facets``."""
+        corners = bend.map_to_bent(self.still_corners, time)
+        bend.check(corners, time)
+        points, areas, normals = face_centres(np.stack(pose.to_world(corners), axis=1)[self.shape.faces], spacing)
+        bending = pose.rotate(bend.velocity(np.stack(pose.to_body(points)), time))
+        return Markers(
+            points=points, weight=areas, velocities=np.stack(pose.velocity_at(points)) + np.stack(bending),
+            normals=normals, spins=skin_spins(pose, points),
         )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class BentMesh(SpaceShape):
-    """A closed mesh that a map bends; see ``bend_shape``."""
+class Bent(Shape):
+    """A shape that a map bends, in the plane or in space; see ``bend_shape``."""
 
-    rest_shape: TriangleMesh
-    """The mesh that it bends."""
+    mirror_symmetry: ClassVar[tuple[bool, ...]] = (False, False, False)
+
+    facets: Facets
+    """The flat pieces that bound the still shape."""
     bend: BendingMap
     """The map."""
 
-    mirror_symmetry = (False, False, False)
+    @property
+    def ndim(self) -> int:  # type: ignore[override]
+        """Number of axes of the still shape [-]."""
+        return self.facets.shape.ndim
 
     @property
     def rigid(self) -> bool:
         """It bends."""
         return False
 
-    def _corners_at(self, time: float) -> np.ndarray:
-        """Return the corners in the body's frame, shape (3, vertex) [m]."""
-        return _bent_corners(self, time)
-
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window, as far as ``reach``."""
-        frame, faces = pose.in_dimensions(3), self.rest_shape.faces
-        px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        window_field = np.zeros((4, z.size, y.size, x.size))
-        h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        corners = np.stack(frame.to_world_3d(self._corners_at(time)), axis=1)
-        normals = np.ascontiguousarray(pseudo_normals(corners, faces))
-        paint_mesh(window_field, px, py, pz, np.ascontiguousarray(corners[faces]), normals, float(reach), h)
-        wz, wy, wx = np.meshgrid(pz, py, px, indexing="ij")
-        rates = [np.array(np.broadcast_to(rate, window_field[0].shape)) for rate in frame.velocity_at((wx, wy, wz))]
-        is_near = window_field[0] < reach
-        bend_velocity = self._velocity(np.stack([wx[is_near], wy[is_near], wz[is_near]]), time, frame)
-        for rate, component in zip(rates, bend_velocity, strict=True):
-            rate[is_near] += component
-        u, v, w = rates
-        return SpaceField(
-            window_field[0],
-            (window_field[1], window_field[2], window_field[3]),
-            (u, v, w),
-            np.full(window_field[0].shape, np.inf),
-        )
-
-    def _velocity(self, points: np.ndarray, time: float, frame: Pose) -> np.ndarray:
-        """Return what bending adds to the velocity at points of the world, shape (3, point) [m/s]."""
-        body = frame.matrix.T @ (points - np.array(frame.position)[:, None])
-        return np.stack(rotate_vectors(frame.matrix, self.bend.velocity(body, time)))
+        corners = np.stack(pose.to_world(_bent_corners(self, time)))
+        distance, *normal = self.facets.paint(corners, points, reach)
+        velocity, is_near = rigid_velocity(points, pose), distance < reach
+        world = np.meshgrid(*reversed(points), indexing="ij")[::-1]
+        places = np.stack(pose.to_body([line[is_near] for line in world]))
+        for component, bending in zip(velocity, pose.rotate(self.bend.velocity(places, time)), strict=True):
+            component[is_near] += bending
+        return Field(distance, tuple(normal), velocity, np.full(distance.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
-        """Return the middles of the triangles, of large ones those of equal parts."""
-        frame, corners = pose.in_dimensions(3), self._corners_at(time)
-        self.bend.check(corners, time)
-        points, share, normals = face_centres(
-            np.stack(frame.to_world_3d(corners), axis=1)[self.rest_shape.faces], spacing
-        )
-        velocities = np.stack(frame.velocity_at(points)) + self._velocity(points, time, frame)
-        spins = np.broadcast_to(frame.spins[:, None], points.shape)
-        return Markers(points=points, weight=share, velocities=velocities, normals=normals, spins=spins)
+        """Return markers over the bent outline or mesh."""
+        return self.facets.markers(self.bend, time, pose, spacing)
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
-        """Return the box around the corners."""
-        corners = np.stack(pose.in_dimensions(3).to_world_3d(self._corners_at(time)))
-        return tuple(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1).ravel().tolist())
+        """Return the rectangle or box around the corners."""
+        return box_around(np.stack(pose.to_world(_bent_corners(self, time))))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return that of the still mesh."""
-        return self.rest_shape.thickness(0.0)
+        """Return that of the still shape."""
+        return self.facets.shape.thickness(0.0)
 
     @property
     def is_compact(self) -> bool:
-        """Whether the still mesh is about as long along each axis."""
-        return self.rest_shape.is_compact
+        """Whether the still shape is about as long along each axis."""
+        return self.facets.shape.is_compact
 
-    def volume(self, time: float) -> float:
-        """Return the volume."""
-        return self.mass(time).volume
-
-    def mass(self, time: float) -> SpaceMass:
-        """Return volume, centre and moments of the bent mesh, and the momentum of what bends in it."""
-        faces = self._corners_at(time).T[self.rest_shape.faces]
-        mesh_mass = mass_of_mesh(faces)
-        centre = np.array(mesh_mass.centre)[:, None]
-        corners = faces.transpose(1, 2, 0) - centre  # of tetrahedra from the centre
-        share = np.einsum("df,df->f", corners[0], np.cross(corners[1], corners[2], axis=0)) / 24
-        corner_weight, other_weight = _TETRAHEDRON
-        total = corners.sum(axis=0)
-        quadrature_points = np.concatenate(
-            [
-                other_weight * total,
-                *(other_weight * total + (corner_weight - other_weight) * corner for corner in corners),
-            ],
-            axis=1,
-        )
-        weights, rates = np.tile(share, 4), self.bend.velocity(quadrature_points + centre, time)
-        rate = (rates * weights).sum(axis=1) / mesh_mass.volume
-        swirl = (np.cross(quadrature_points, rates - rate[:, None], axis=0) * weights).sum(axis=1)
-        u, v, w = rate.tolist()
-        a, b, c = swirl.tolist()
-        return SpaceMass(
-            volume=mesh_mass.volume,
-            centre=mesh_mass.centre,
-            centre_rate=(u, v, w),
-            moments=mesh_mass.moments,
-            swirl=(a, b, c),
-        )
+    def mass(self, time: float) -> Mass:
+        """Return volume, centre and moments of the bent shape, and the momentum of what bends in it."""
+        corners = _bent_corners(self, time)
+        still_mass = self.facets.mass(corners)
+        centre = np.array(still_mass.centre)[:, None]
+        points, weights = self.facets.quadrature(corners, centre)
+        rates = self.bend.velocity(points, time)
+        rate = (rates * weights).sum(axis=1) / still_mass.volume
+        arms, relative_velocities = points - centre, rates - rate[:, None]
+        turns = [
+            arms[a] * relative_velocities[b] - arms[b] * relative_velocities[a] for a, b in ROTATION_PLANES[self.ndim]
+        ]
+        swirl = tuple(float((turn * weights).sum()) for turn in turns)
+        return replace(still_mass, centre_rate=tuple(rate.tolist()), swirl=swirl)
 
 
 @lru_cache(maxsize=16)
-def _bent_corners(shape: BentOutline | BentMesh, time: float) -> np.ndarray:
+def _bent_corners(shape: Bent, time: float) -> np.ndarray:
     """Return the corners of a bent shape in the body's frame, shape (axis, corner) [m]; the last results are cached."""
-    still_corners = shape._corners if isinstance(shape, BentOutline) else shape.rest_shape.vertices.T
-    corners = shape.bend.map_to_bent(still_corners, time)
+    corners = shape.bend.map_to_bent(shape.facets.still_corners, time)
     corners.flags.writeable = False
     return corners
 
@@ -375,15 +375,16 @@ _TETRAHEDRON = (5 + 3 * 5**0.5) / 20, (5 - 5**0.5) / 20
 """Barycentric weights of the four-point quadrature on a tetrahedron, exact for polynomials of second order [-]."""
 
 
-@overload
-def bend_shape(shape: Solid, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentOutline: ...
-@overload
-def bend_shape(shape: TriangleMesh, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentMesh: ...
-def bend_shape(shape: Any, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> BentOutline | BentMesh:
+def _extent(corners: np.ndarray) -> float:
+    """Return the greatest extent of corners along an axis [m]."""
+    return float(np.ptp(corners, axis=1).max())
+
+
+def bend_shape(shape: PlaneSolid | TriangleMesh, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME) -> Bent:
     """Return a body that a map bends, swells, shears or moves, in the plane or in space.
 
     Args:
-        shape: the still shape: any ``Solid``, such as an ``Ellipse`` or ``from_outline``, or a ``TriangleMesh``.
+        shape: the still shape: any ``PlaneSolid``, such as an ``Ellipse`` or ``from_outline``, or a ``TriangleMesh``.
         back: ``back(x, y, time)``, in space ``back(x, y, z, time)``: which place of the still shape is at places of the
             body's frame, arrays of coordinates [m, s]; smooth, one to one, and defined a few cells around the body too.
         tick: time over which it is differentiated [s].
@@ -393,17 +394,16 @@ def bend_shape(shape: Any, back: Back, *, tick: float = DEFAULT_DIFFERENCE_TIME)
     """
     if not (isfinite(tick) and tick > 0):
         raise InvalidDesign(f"tick is {tick} s; a positive time is needed, short for what the map does.")
-    if isinstance(shape, TriangleMesh):
-        size = float(np.ptp(shape.vertices, axis=0).max())
-        mesh = BentMesh(rest_shape=shape, bend=BendingMap(back, 3, size, tick))
-        mesh.bounds(0.0, Pose())
-        return mesh
-    if not isinstance(shape, Solid):
+    given: object = shape
+    if isinstance(given, PlaneSolid):
+        facets: Facets = Edges.of_outline(given)
+    elif isinstance(given, TriangleMesh):
+        facets = Triangles.of_mesh(given)
+    else:
         raise InvalidDesign(
-            f"a {type(shape).__name__} cannot be bent by a map; give a plane Solid, such as from_outline or an "
-            f"Ellipse, or a closed mesh."
+            f"a {type(given).__name__} cannot be bent by a map; give a PlaneSolid, such as from_outline or an Ellipse, "
+            f"or a closed mesh."
         )
-    size = float(np.ptp(np.stack(shape.outline(CORNERS)), axis=1).max())
-    outline = BentOutline(rest_shape=shape, bend=BendingMap(back, 2, size, tick))
-    outline.bounds(0.0, Pose())
-    return outline
+    bent = Bent(facets=facets, bend=BendingMap(back, shape.ndim, _extent(facets.still_corners), tick))
+    bent.bounds(0.0, Pose())
+    return bent

@@ -1,6 +1,5 @@
 """Bodies in the water: a shape with a motion, and the field of several bodies on the grid."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
 from typing import NamedTuple
@@ -14,15 +13,14 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid
 from suchus.flow.immerse import MIN_CLOSED_THICKNESS, MIN_THICKNESS, REACH, WINDOW_MARGIN
 from suchus.flow.pose import Motion, Pose
-from suchus.flow.shape import Field, Shape
-from suchus.flow.solid import Ellipsoid, SpaceField, SpaceShape
+from suchus.flow.shape import Axes, Field, Shape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
     """A shape whose motion is given."""
 
-    shape: Shape | SpaceShape
+    shape: Shape
     """Shape of the body in its own frame."""
     motion: Pose | Motion = field(default_factory=Pose)
     """Position and angle of its frame: a fixed pose, or a pose for every time [s]."""
@@ -57,6 +55,9 @@ AnyBody = Body | FreeBody
 
 MAX_ROWS = 127
 """Largest number of parts of all bodies together: the parts are counted in one byte [-]."""
+
+_REACHES = {2: REACH + 1, 3: REACH}
+"""Distance from a body up to which its field is exact, in the plane and in space [cells]."""
 
 SYMMETRY_TOLERANCE = 1e-6
 """Distance of a body's middle from a mirror, over a cell, up to which the body is symmetric about it [-]."""
@@ -151,7 +152,7 @@ def check_cut(body: AnyBody, pose: Pose, axis: int, plane: float, h: float, time
     frame, name = pose.in_dimensions(3), "xyz"[axis]
     alignment = np.abs(frame.matrix[axis])  # cosines between the body's axes and the mirror's normal
     upright = float(alignment.max()) > 1 - SYMMETRY_TOLERANCE**2
-    if isinstance(body.shape, SpaceShape) and upright and not body.shape.mirror_symmetry[int(alignment.argmax())]:
+    if upright and not body.shape.mirror_symmetry[int(alignment.argmax())]:
         raise InvalidDesign(
             f"the Mirror at {name} = {plane:.4g} m cuts {body.name}, whose two halves there are no images of each "
             f"other; move the body or the grid, or take another side. A Trunk may be cut across z."
@@ -209,7 +210,7 @@ def rows_of(bodies: list[AnyBody]) -> list[range]:
     Raises:
         InvalidDesign: there are more than ``MAX_ROWS`` parts.
     """
-    ends = list(accumulate([getattr(body.shape, "parts", 1) for body in bodies], initial=0))
+    ends = list(accumulate([body.shape.parts for body in bodies], initial=0))
     if ends[-1] > MAX_ROWS:
         raise InvalidDesign(f"the bodies have {ends[-1]} parts together; up to {MAX_ROWS} are allowed. Cut them less.")
     return [range(start, end) for start, end in pairwise(ends)]
@@ -225,8 +226,8 @@ class Overlap(NamedTuple):
 
 
 def measure_all(
-    bodies: list[AnyBody], poses: list[Pose], points: list[np.ndarray], time: float, h: float
-) -> tuple[SpaceField, np.ndarray, Overlap]:
+    bodies: list[AnyBody], poses: list[Pose], points: Axes, time: float, h: float
+) -> tuple[Field, np.ndarray, Overlap]:
     """Return the field of all bodies on a window, the part that each point belongs to, and the deepest overlap.
 
     At each point the field is that of the nearest body. The part is counted over all bodies, as ``rows_of`` does.
@@ -241,10 +242,8 @@ def measure_all(
     nearest_field, owner, overlap = None, np.zeros([p.size for p in reversed(points)], np.int8), Overlap(0.0, (0, 0))
     body_rows = rows_of(bodies)
     for number, (rows, body, pose) in enumerate(zip(body_rows, bodies, poses, strict=True)):
-        measure: Callable[..., Field | SpaceField] = body.shape.measure
-        f = measure(*points, time, pose, (REACH + (len(points) == 2)) * h)
-        body_field = SpaceField(f.distance, f.normal, f.velocity, f.thickness)
-        part_index = getattr(f, "part_index", None)
+        body_field = body.shape.measure(points, time, pose, _REACHES[len(points)] * h)
+        part_index = body_field.part_index
         if nearest_field is None:
             nearest_field = body_field
             owner = owner if part_index is None else part_index.astype(np.int8)
@@ -261,25 +260,18 @@ def measure_all(
     return nearest_field, owner, overlap
 
 
-def _merge_fields(mask: np.ndarray, a: SpaceField, b: SpaceField) -> SpaceField:
+def _merge_fields(mask: np.ndarray, a: Field, b: Field) -> Field:
     """Return field ``a`` at the points of a mask and field ``b`` elsewhere."""
 
     def choose(x: np.ndarray, y: np.ndarray) -> np.ndarray:
         return np.where(mask, x, y)
 
-    return SpaceField(
+    return Field(
         choose(a.distance, b.distance),
         tuple(map(choose, a.normal, b.normal)),
         tuple(map(choose, a.velocity, b.velocity)),
         choose(a.thickness, b.thickness),
     )
-
-
-def _closed(shape: Shape | SpaceShape, time: float) -> bool:
-    """Return whether no water passes through the middle of a shape, however thin it is."""
-    if isinstance(shape, Shape):
-        return shape.centreline(time, Pose()) is not None
-    return isinstance(shape, Ellipsoid) and shape.midsurface(time, Pose()) is not None
 
 
 def thin_fraction(body: AnyBody, grid: Grid, time: float) -> float:
@@ -295,7 +287,7 @@ def thin_fraction(body: AnyBody, grid: Grid, time: float) -> float:
     """
     station, thickness = body.shape.thickness(time)
     min_thickness, max_thickness = MIN_THICKNESS * grid.cell, float(thickness.max())
-    min_cells = MIN_CLOSED_THICKNESS if _closed(body.shape, time) else MIN_THICKNESS
+    min_cells = MIN_CLOSED_THICKNESS if body.shape.is_closed(time) else MIN_THICKNESS
     if max_thickness < min_cells * grid.cell:
         raise InvalidDesign(
             f"{body.name} is {max_thickness:.4g} m thick at most, {max_thickness / grid.cell:.2g} cells of "

@@ -112,24 +112,28 @@ def _paint_ellipsoid_point(window_field, index, offset, turn, a, reach, depth):
 
 
 @compiled
-def measure_ellipse(point_field, x, y, a):
-    """Write signed distance and outward normal of an ellipse at points.
+def measure_ellipsoid(point_field, points, a):
+    """Write signed distance and outward normal of an ellipse or an ellipsoid at points.
 
     Args:
-        point_field: array to write to, shape (3, point).
-        x: coordinates of the points along the first half-axis.
-        y: coordinates of the points along the second half-axis.
-        a: half-axes, shape (2,).
+        point_field: array to write to, shape (1 + axis, point).
+        points: coordinates along the half-axes, shape (axis, point).
+        a: half-axes, shape (axis,).
     """
-    for k in range(x.size):
-        px, py = max(abs(x[k]), TINY * a[0]), max(abs(y[k]), TINY * a[1])
-        t = foot_parameter((px, py), a)
-        nx, ny = px / (t + a[0] * a[0]), py / (t + a[1] * a[1])
-        size = 1.0 / np.sqrt(nx * nx + ny * ny)
-        distance = (px - a[0] * a[0] * nx) * nx + (py - a[1] * a[1] * ny) * ny
+    p = np.empty(len(a))
+    for k in range(points.shape[1]):
+        for d in range(len(a)):
+            p[d] = max(abs(points[d, k]), TINY * a[d])
+        t = foot_parameter(p, a)
+        square, distance = 0.0, 0.0
+        for d in range(len(a)):
+            normal = p[d] / (t + a[d] * a[d])
+            square += normal * normal
+            distance += (p[d] - a[d] * a[d] * normal) * normal
+        size = 1.0 / np.sqrt(square)
         point_field[0, k] = distance * size
-        point_field[1, k] = np.copysign(nx * size, x[k])
-        point_field[2, k] = np.copysign(ny * size, y[k])
+        for d in range(len(a)):
+            point_field[1 + d, k] = np.copysign(p[d] / (t + a[d] * a[d]) * size, points[d, k])
 
 
 @threaded

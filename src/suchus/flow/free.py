@@ -8,7 +8,6 @@ from suchus.core.errors import InvalidDesign
 from suchus.flow.grid import check_kinds
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Shape
-from suchus.flow.solid import SpaceShape
 
 Three = tuple[float, float, float]
 Six = tuple[float, float, float, float, float, float]
@@ -27,7 +26,7 @@ class FreeBody:
     centre of mass. Where they are counted, three numbers in space mean x, y and about z.
     """
 
-    shape: Shape | SpaceShape
+    shape: Shape
     """Shape of the body in its own frame, at every time."""
     start: tuple[float, float] | Three = (0.0, 0.0)
     """Centre of mass at time 0 (x, y), in space (x, y, z); z is 0 if it is not given [m]."""

@@ -136,7 +136,7 @@ def _lines_within(p, q, r, origin, h, count):
 
 
 @compiled
-def close_faces(passage, x, y, x0, y0, h):
+def close_faces(passage, c, pieces, origin, h):
     """Close the faces of one direction whose two cells lie on either side of a line to the pressure.
 
     The kernel of a body thinner than the kernel's width leaves some fluid inside, which the pressure drives through the
@@ -144,22 +144,26 @@ def close_faces(passage, x, y, x0, y0, h):
     are closed, no path from cell to cell crosses the line.
 
     Args:
-        passage: share of the pressure's gradient that acts on the faces of a window, shape (row, face); changed.
-        x: the line, across the faces; shape (point,).
-        y: the line, along the rows.
-        x0: the cell before the first face.
-        y0: the first row.
+        passage: share of the pressure's gradient that acts on the faces across axis ``c`` of a window, shape (y, x);
+            changed.
+        c: axis that the faces lie across.
+        pieces: ends of the pieces of the line, shape (end, axis, piece).
+        origin: middle of the window's first cell, x and y; the first face lies before it.
         h: cell.
     """
-    rows, faces = passage.shape
-    for k in range(x.size - 1):
-        start_x, start_y, end_x, end_y = x[k], y[k], x[k + 1], y[k + 1]
+    a = 1 - c
+    lines, faces = passage.shape[c], passage.shape[a]
+    cell_index = np.zeros(2, np.int64)
+    for k in range(pieces.shape[2]):
+        start_x, start_y, end_x, end_y = pieces[0, c, k], pieces[0, a, k], pieces[1, c, k], pieces[1, a, k]
         lower_bound, upper_bound = (start_y, end_y) if start_y < end_y else (end_y, start_y)
-        for j in range(max(int(np.ceil((lower_bound - y0) / h)), 0), min(int(np.ceil((upper_bound - y0) / h)), rows)):
-            crossing_x = start_x + (end_x - start_x) * (y0 + j * h - start_y) / (end_y - start_y)
-            i = int(np.floor((crossing_x - x0) / h))
+        first_line = max(int(np.ceil((lower_bound - origin[a]) / h)), 0)
+        for j in range(first_line, min(int(np.ceil((upper_bound - origin[a]) / h)), lines)):
+            crossing = start_x + (end_x - start_x) * (origin[a] + j * h - start_y) / (end_y - start_y)
+            i = int(np.floor((crossing - (origin[c] - h)) / h))
             if 0 <= i < faces:
-                passage[j, i] = min(passage[j, i], MIN_FLUID_FRACTION)
+                cell_index[c], cell_index[a] = i, j
+                passage[cell_index[1], cell_index[0]] = min(passage[cell_index[1], cell_index[0]], MIN_FLUID_FRACTION)
 
 
 @compiled
@@ -197,6 +201,10 @@ def close_surface(passage, c, triangles, origin, h):
                     passage[cell_index[2], cell_index[1], cell_index[0]] = min(
                         passage[cell_index[2], cell_index[1], cell_index[0]], MIN_FLUID_FRACTION
                     )
+
+
+CLOSE = {2: close_faces, 3: close_surface}
+"""What closes the faces through the middle of a thin body, in the plane and in space."""
 
 
 @ordered_part

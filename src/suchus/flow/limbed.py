@@ -8,11 +8,10 @@ import numpy as np
 from suchus.core.errors import InvalidDesign
 from suchus.core.kinds import show
 from suchus.flow.markers import Markers
-from suchus.flow.mass import SpaceMass, tensor
+from suchus.flow.mass import Mass, tensor
 from suchus.flow.midline import MidlineState
-from suchus.flow.pose import Pose, rotate_vectors
-from suchus.flow.shape import check_positive
-from suchus.flow.solid import SpaceField
+from suchus.flow.pose import Pose
+from suchus.flow.shape import Axes, Field, box_slices, check_positive, write_nearer
 from suchus.flow.trunk import Trunk, in_world
 
 _MIN_POINTS_ACROSS = 28
@@ -182,70 +181,35 @@ class Limbed(Trunk):
         is_inside: np.ndarray = (lateral * half_height) ** 2 + (pz * half_width) ** 2 < (half_width * half_height) ** 2
         return is_inside & (arc >= 0) & (arc <= spine.arc[-1])
 
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
-        window_field = Trunk.measure(self, x, y, z, time, pose, reach)
+        window_field = Trunk.measure(self, points, time, pose, reach)
         spine, frame = self.midline_and_frame(time, pose)
         for limb in self.limbs:
-            self._add(window_field, limb, spine, frame, (z, y, x), reach)
+            start, end, *_ = limb.end_motion(spine)
+            ends = [np.array(frame.to_world((*end_point, 0.0))) for end_point in (start, end)]
+            box = box_slices(points, np.minimum(*ends), np.maximum(*ends), limb.radius + reach)
+            window = tuple(line[extent] for line, extent in zip(points, reversed(box), strict=True))
+            write_nearer(window_field, box, self._limb_field(limb, window, spine, frame), self._part_index(limb))
         return window_field
 
-    def _add(
-        self,
-        window_field: SpaceField,
-        limb: Capsule,
-        spine: MidlineState,
-        frame: Pose,
-        axes: tuple[np.ndarray, ...],
-        reach: float,
-    ) -> None:
-        """Write a capsule's field to the points of a window that are nearer to it than to what is there.
+    def _limb_field(self, limb: Capsule, points: Axes, spine: MidlineState, frame: Pose) -> Field:
+        """Return the field of a capsule on the points of a window.
 
         Args:
-            window_field: field to change.
             limb: the capsule.
+            points: coordinates of the window along each axis [m].
             spine: the trunk's midline in its own frame.
             frame: pose of that frame in the world.
-            axes: coordinates of the window along z, y and x [m].
-            reach: distance up to which the field counts [m].
         """
-        start, end, rate, turn = limb.end_motion(spine)
-        ends = [np.array(frame.to_world_3d((*end_point, 0.0))) for end_point in (start, end)]
-        lower_bound, upper_bound = (pick(*ends)[::-1] for pick in (np.minimum, np.maximum))
-        max_distance = limb.radius + reach
-        box = tuple(
-            slice(*np.searchsorted(axis, (a - max_distance, b + max_distance)))
-            for axis, a, b in zip(axes, lower_bound, upper_bound, strict=True)
-        )  # fmt: skip
-        wz, wy, wx = np.meshgrid(*(axis[s] for axis, s in zip(axes, box, strict=True)), indexing="ij")
-        px, py, pz = frame.to_body_3d((wx, wy, wz))
+        start, _, rate, turn = limb.end_motion(spine)
+        world = np.meshgrid(*reversed(points), indexing="ij")[::-1]
+        px, py, pz = frame.to_body(world)
         offsets, size = limb.offsets_from_axis(px, py, pz, spine)
-        distance = size - limb.radius
-        trunk = window_field.distance[box]
-        is_nearer = distance < trunk
-        normal = rotate_vectors(
-            frame.matrix, [component / np.maximum(size, 1e-12 * limb.radius) for component in offsets]
-        )
-        facing = sum(
-            component * present_component[box]
-            for component, present_component in zip(normal, window_field.normal, strict=True)
-        )
-        sunk = trunk < facing * (
-            distance + 2 * limb.radius
-        )  # the capsule's far side lies in the body that the field has already
-        limb_velocity = rotate_vectors(
-            frame.matrix, (rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px)
-        )
-        velocity = [a + b for a, b in zip(limb_velocity, frame.velocity_at((wx, wy, wz)), strict=True)]
-        values = [
-            (window_field.distance, distance), (window_field.thickness, np.where(sunk, np.inf, 2 * limb.radius)),
-            *zip(window_field.normal, normal, strict=True),
-            *zip(window_field.velocity, velocity, strict=True),
-        ]  # fmt: skip
-        for target, value in values:
-            target[box] = np.where(is_nearer, value, target[box])
-        if window_field.part_index is not None:
-            window_field.part_index[box] = np.where(is_nearer, self._part_index(limb), window_field.part_index[box])
+        normal = frame.rotate([component / np.maximum(size, 1e-12 * limb.radius) for component in offsets])
+        limb_velocity = frame.rotate((rate[0] - turn * (py - start[1]), rate[1] + turn * (px - start[0]), 0 * px))
+        velocity = tuple(a + b for a, b in zip(limb_velocity, frame.velocity_at(world), strict=True))
+        return Field(size - limb.radius, normal, velocity, np.full(size.shape, 2 * limb.radius))
 
     def _part_index(self, limb: Capsule) -> int:
         return int(np.searchsorted(self.cuts, limb.arc_position, side="right"))
@@ -289,13 +253,13 @@ class Limbed(Trunk):
         """Return the box around the body."""
         box, (spine, frame) = list(Trunk.bounds(self, time, pose)), self.midline_and_frame(time, pose)
         for limb in self.limbs:
-            end_points = (frame.to_world_3d((*end, 0.0)) for end in limb.end_motion(spine)[:2])
+            end_points = (frame.to_world((*end, 0.0)) for end in limb.end_motion(spine)[:2])
             for d, ends in enumerate(zip(*end_points, strict=True)):
                 box[2 * d] = min(box[2 * d], float(min(ends)) - limb.radius)
                 box[2 * d + 1] = max(box[2 * d + 1], float(max(ends)) + limb.radius)
         return tuple(box)
 
-    def mass(self, time: float) -> SpaceMass:
+    def mass(self, time: float) -> Mass:
         """Return volume, centre and moments of trunk and capsules together."""
         trunk, spine = Trunk.mass(self, time), self._spine(time)
         volume, centre, rate = [trunk.volume], [np.array(trunk.centre)], [np.array(trunk.centre_rate)]
@@ -315,7 +279,7 @@ class Limbed(Trunk):
         moments = moments + tensor((v * arms.T) @ arms)
         swirl += float(v @ (arms[:, 0] * relative_velocities[:, 1] - arms[:, 1] * relative_velocities[:, 0]))
         (cx, cy, _), (cu, cv, _) = middle.tolist(), drift.tolist()
-        return SpaceMass(
+        return Mass(
             volume=float(v.sum()), centre=(cx, cy, 0.0), centre_rate=(cu, cv, 0.0), moments=moments,
             swirl=(0.0, 0.0, float(swirl)),
         )  # fmt: skip

@@ -1,3 +1,4 @@
+# ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
 """A body of rigid pieces, each with its own pose: limbs that paddle, an axis that leaves its plane."""
 
 from collections.abc import Callable, Sequence
@@ -12,18 +13,20 @@ from suchus.core import rotation
 from suchus.core.errors import InvalidDesign
 from suchus.flow.limbed import around_rod
 from suchus.flow.markers import Markers
-from suchus.flow.mass import SpaceMass, tensor
-from suchus.flow.pose import Pose, rotate_vectors
-from suchus.flow.shape import check_positive
-from suchus.flow.solid import MIN_INSIDE_DEPTH, Ellipsoid, SpaceField, SpaceShape, is_blunt
+from suchus.flow.mass import Mass, tensor
+from suchus.flow.pose import Pose
+from suchus.flow.shape import Axes, Field, Shape, box_slices, check_positive, write_nearer
+from suchus.flow.solid import MIN_INSIDE_DEPTH, Ellipsoid, Skin, Solid, box_around, is_blunt
 
 _MIN_POINTS_ACROSS = 16
 """Points across a piece, at least, over which its volume is summed [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spherocylinder(SpaceShape):
+class Spherocylinder(Solid):
     """A rod with round ends along the body's x, its middle at the origin; a ball if it has no length."""
+
+    ndim: ClassVar[int] = 3
 
     length: float
     """Length between the middles of its round ends [m]."""
@@ -46,36 +49,30 @@ class Spherocylinder(SpaceShape):
         axial_excess = np.maximum(np.abs(x) - 0.5 * self.length, 0.0)
         return np.asarray(axial_excess * axial_excess + y * y + z * z < (1 - MIN_INSIDE_DEPTH) * self.radius**2)
 
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:  # noqa: ARG002
-        """Return the field on the points of a window."""
-        frame = pose.in_dimensions(3)
-        world = x, y[:, None], z[:, None, None]
-        px, py, pz = frame.to_body_3d(world)
-        dx = px - np.clip(px, -0.5 * self.length, 0.5 * self.length)
-        size = np.sqrt(dx * dx + py * py + pz * pz)
+    def distance(self, *points: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return signed distance [m] and outward normal [-] at points of its own frame."""
+        x, y, z = points
+        dx = x - np.clip(x, -0.5 * self.length, 0.5 * self.length)
+        size = np.sqrt(dx * dx + y * y + z * z)
         safe = np.maximum(size, 1e-12 * self.radius)
-        normal = rotate_vectors(frame.matrix, (dx / safe, py / safe, pz / safe))
-        u, v, w = (np.broadcast_to(component, size.shape) for component in frame.velocity_at(world))
-        return SpaceField(size - self.radius, normal, (u, v, w), np.full(size.shape, 2 * self.radius))
+        return size - self.radius, dx / safe, y / safe, z / safe
 
-    def markers(self, time: float, pose: Pose, spacing: float) -> Markers:  # noqa: ARG002
+    def skin(self, spacing: float) -> Skin:
         """Return points on rings along it and over its round ends."""
-        frame = pose.in_dimensions(3)
-        local, facing, areas = around_rod(self.length, self.radius, spacing)
-        points = np.stack(frame.to_world_3d(local - np.array([[0.5 * self.length], [0.0], [0.0]])))
-        spins = np.broadcast_to(frame.spins[:, None], points.shape)
-        return Markers(
-            points=points, weight=areas, velocities=np.stack(frame.velocity_at(points)),
-            normals=np.stack(rotate_vectors(frame.matrix, facing)), spins=spins,
-        )  # fmt: skip
+        points, normals, areas = around_rod(self.length, self.radius, spacing)
+        return Skin(points - np.array([[0.5 * self.length], [0.0], [0.0]]), normals, areas)
 
-    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:  # noqa: ARG002
+    def extents(self) -> tuple[float, ...]:
+        """Return the box around it in its own frame."""
+        return box_around(np.stack([-self.half_extents, self.half_extents], axis=1))
+
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around it."""
         frame = pose.in_dimensions(3)
         reach = (0.5 * self.length * np.abs(frame.matrix[:, 0]) + self.radius).tolist()
         return tuple(p + direction * r for p, r in zip(frame.position, reach, strict=True) for direction in (-1.0, 1.0))
 
-    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:  # noqa: ARG002
+    def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter."""
         return np.zeros(1), np.full(1, 2 * self.radius)
 
@@ -84,18 +81,15 @@ class Spherocylinder(SpaceShape):
         """Whether it is about as long as thick."""
         return is_blunt(self.half_extents)
 
-    def volume(self, time: float) -> float:  # noqa: ARG002
-        """Return the volume."""
-        return np.pi * self.radius**2 * (self.length + 4 / 3 * self.radius)
-
-    def mass(self, time: float) -> SpaceMass:
+    def mass(self, time: float) -> Mass:
         """Return volume and moments; the centre is the origin."""
         r, length, zero = self.radius, self.length, (0.0, 0.0, 0.0)
         rod, ball = np.pi * r * r * length, 4 / 3 * np.pi * r**3
         axial_moment = rod * length**2 / 12 + ball * (r * r / 5 + length**2 / 4 + 3 * length * r / 8)
         transverse_moment = rod * r * r / 4 + ball * r * r / 5
-        return SpaceMass(
-            volume=self.volume(time), centre=zero, centre_rate=zero,
+        volume = np.pi * r**2 * (length + 4 / 3 * r)
+        return Mass(
+            volume=volume, centre=zero, centre_rate=zero,
             moments=tensor(np.diag([axial_moment, transverse_moment, transverse_moment])), swirl=zero,
         )  # fmt: skip
 
@@ -128,7 +122,7 @@ class LinkPiece:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Linked(SpaceShape):
+class Linked(Shape):
     """The union of rigid pieces on links, each of which has its own position, attitude, velocity and spin.
 
     Each link is a part of its own in ``Simulation.last_loads``. Links that turn against each other at a joint should
@@ -138,7 +132,8 @@ class Linked(SpaceShape):
         InvalidDesign: on creation, without pieces, or where the links that they name are not those of ``motion``.
     """
 
-    mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (False, False, False)
+    ndim: ClassVar[int] = 3
+    mirror_symmetry: ClassVar[tuple[bool, ...]] = (False, False, False)
     jointed: ClassVar[bool] = True
 
     pieces: tuple[LinkPiece, ...]
@@ -171,42 +166,19 @@ class Linked(SpaceShape):
         frame, links = pose.in_dimensions(3), self.motion(time)
         return [_piece_pose(piece, links, frame) for piece in self.pieces]
 
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window, that of the nearest piece at each."""
-        size = (z.size, y.size, x.size)
-        window_field = SpaceField(
+        size = tuple(line.size for line in reversed(points))
+        window_field = Field(
             np.full(size, reach), tuple(np.zeros((3, *size))), tuple(np.zeros((3, *size))), np.full(size, np.inf),
             np.zeros(size, np.int8),
         )  # fmt: skip
-        assert window_field.part_index is not None
         for piece, piece_pose in zip(self.pieces, self.poses(time, pose), strict=True):
-            lower_bound, upper_bound = (np.array(ends)[::-1] for ends in _corners(piece.shape.bounds(time, piece_pose)))
-            box = tuple(
-                slice(*np.searchsorted(axis, (a - reach, b + reach)))
-                for axis, a, b in zip((z, y, x), lower_bound, upper_bound, strict=True)
-            )  # fmt: skip
+            box = box_slices(points, *_corners(piece.shape.bounds(time, piece_pose)), reach)
             if any(extent.start == extent.stop for extent in box):
                 continue
-            piece_field = piece.shape.measure(x[box[2]], y[box[1]], z[box[0]], time, piece_pose, reach)
-            present_distance = window_field.distance[box]
-            is_nearer = piece_field.distance < present_distance
-            facing = sum(
-                component * present_component[box]
-                for component, present_component in zip(piece_field.normal, window_field.normal, strict=True)
-            )
-            thickness = np.where(np.isfinite(piece_field.thickness), piece_field.thickness, 0.0)
-            sunk = present_distance < facing * (
-                piece_field.distance + thickness
-            )  # the piece's far side lies in the body that the field has already
-            values = [
-                (window_field.distance, piece_field.distance),
-                (window_field.thickness, np.where(sunk, np.inf, piece_field.thickness)),
-                *zip(window_field.normal, piece_field.normal, strict=True),
-                *zip(window_field.velocity, piece_field.velocity, strict=True),
-            ]  # fmt: skip
-            for target, value in values:
-                target[box] = np.where(is_nearer, value, target[box])
-            window_field.part_index[box] = np.where(is_nearer, piece.link, window_field.part_index[box])
+            window = tuple(line[extent] for line, extent in zip(points, reversed(box), strict=True))
+            write_nearer(window_field, box, piece.shape.measure(window, time, piece_pose, reach), piece.link)
         return window_field
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
@@ -252,17 +224,14 @@ class Linked(SpaceShape):
                 or (upper_bound < a).any()
             ):
                 continue
-            is_inside |= piece.shape.contains(np.array(piece_pose.to_body_3d(points)))
+            is_inside |= piece.shape.contains(np.array(piece_pose.to_body(points)))
         return is_inside
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around all pieces."""
-        boxes = np.array([
-            piece.shape.bounds(time, piece_pose)
-            for piece, piece_pose in zip(self.pieces, self.poses(time, pose), strict=True)
-        ])  # fmt: skip
-        ends = zip(boxes[:, ::2].min(axis=0).tolist(), boxes[:, 1::2].max(axis=0).tolist(), strict=True)
-        return tuple(end for pair in ends for end in pair)
+        poses = self.poses(time, pose)
+        boxes = [np.reshape(piece.shape.bounds(time, p), (3, 2)) for piece, p in zip(self.pieces, poses, strict=True)]
+        return box_around(np.concatenate(boxes, axis=1))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the pieces' lengths one after the other, and the thickness of each."""
@@ -271,11 +240,7 @@ class Linked(SpaceShape):
         ends = np.concatenate([[0.0], lengths.cumsum()])
         return np.column_stack([ends[:-1], ends[1:]]).ravel(), np.repeat(thicknesses, 2)
 
-    def volume(self, time: float) -> float:
-        """Return the volume of the union."""
-        return self.mass(time).volume
-
-    def mass(self, time: float) -> SpaceMass:
+    def mass(self, time: float) -> Mass:
         """Return volume, centre and moments of the union and the momentum of its deformation.
 
         They are sums over points inside the pieces.
@@ -283,7 +248,7 @@ class Linked(SpaceShape):
         piece_poses, points, rates, volumes = self.poses(time, Pose()), [], [], []
         for k, (piece, piece_pose) in enumerate(zip(self.pieces, piece_poses, strict=True)):
             inner, point_volume = _volume_samples(piece.shape)
-            world = np.array(piece_pose.to_world_3d(inner))
+            world = np.array(piece_pose.to_world(inner))
             is_outside = ~self._is_covered(world, piece_poses, k, time, earlier_only=True)
             points.append(world[:, is_outside])
             rates.append(np.array(piece_pose.velocity_at(world))[:, is_outside])
@@ -295,7 +260,7 @@ class Linked(SpaceShape):
         arms, relative_velocities = positions - centre[:, None], velocities - drift[:, None]
         swirl = np.cross(arms.T, relative_velocities.T).T @ v
         x, y, z = (tuple(vector.tolist()) for vector in (centre, drift, swirl))
-        return SpaceMass(volume=float(v.sum()), centre=x, centre_rate=y, moments=tensor((v * arms) @ arms.T), swirl=z)
+        return Mass(volume=float(v.sum()), centre=x, centre_rate=y, moments=tensor((v * arms) @ arms.T), swirl=z)
 
     @cached_property
     def bounding_radii(self) -> Float[np.ndarray, " link"]:
@@ -336,7 +301,7 @@ def _piece_pose(piece: LinkPiece, links: LinkStates, frame: Pose) -> Pose:
     link_matrix = links.matrix[k]
     arm = link_matrix @ np.array(piece.position)
     spin, rate = links.spin[k], links.velocity[k] + np.cross(links.spin[k], arm)
-    position = np.array(frame.to_world_3d(links.position[k] + arm))
+    position = np.array(frame.to_world(links.position[k] + arm))
     velocity = outer @ rate + np.array(frame.velocity_at(position))
     yaw, pitch, roll = rotation.attitude(outer @ link_matrix @ rotation.matrix(np.array(piece.quaternion)))
     p, q, r = (outer @ spin + frame.spins).tolist()

@@ -9,12 +9,11 @@ from suchus.core.errors import Diverged
 from suchus.flow.body import AnyBody, rows_of
 from suchus.flow.force import ControlVolume, Load
 from suchus.flow.markers import Markers
-from suchus.flow.midline import Midline
+from suchus.flow.midline import Spined
 from suchus.flow.momentum import Reaction, contents_of, reaction, skin_contents
 from suchus.flow.pose import Pose, cross
 from suchus.flow.record import COLUMNS, PART_COLUMNS, ROW_HEADER_SIZE, SPACE_COLUMNS, Record
 from suchus.flow.setup import Setup
-from suchus.flow.trunk import Trunk
 from suchus.flow.water import Fluid
 
 MAX_SPEED_RATIO = 100.0
@@ -157,7 +156,7 @@ class Log:
 
 def _is_divided(body: AnyBody) -> bool:
     """Return whether the record has the parts of a body: those along a midline."""
-    return isinstance(body.shape, Trunk | Midline)
+    return isinstance(body.shape, Spined)
 
 
 def columns(load: Load | None, act: Reaction, frame: np.ndarray, place: Pose, error: float) -> list[float]:
@@ -196,7 +195,7 @@ def part_columns(
     force, torque = acts.force, acts.moment
     if len(force) < 2 or not _is_divided(body):
         return []
-    assert isinstance(body.shape, Trunk | Midline)
+    assert isinstance(body.shape, Spined)
     power = acts.power - force @ frame
     rear_force, rear_moment = (load[::-1].cumsum(axis=0)[::-1] for load in (force, torque))
     ends = body.shape.position_at(time, pose, np.array([0.0, *body.shape.cuts])) - np.array(reference_point)

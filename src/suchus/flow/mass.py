@@ -1,4 +1,4 @@
-"""Area, centre and moments of a body's shape, and the momentum of its deformation."""
+"""Volume, centre and moments of a body's shape, and the momentum of its deformation."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,66 +8,52 @@ import numpy as np
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mass:
-    """Mass and moment of inertia of a body of density 1, in its own frame, per metre of depth."""
-
-    area: float
-    """Area of the cross-section [m^2]."""
-    centre: tuple[float, float]
-    """Centre of the area [m]."""
-    centre_rate: tuple[float, float]
-    """Velocity that the deformation gives to the centre [m/s]."""
-    moment: float
-    """Second moment of the area about the centre [m^4]."""
-    swirl: float
-    """Angular momentum of the deformation about the centre [m^4/s]."""
-
-    @property
-    def size(self) -> float:
-        """The area, by which the density is multiplied to give the mass [m^2]."""
-        return self.area
-
-    def inertia(self, _: np.ndarray) -> np.ndarray:
-        """Return the mass matrix over the density for motions along x and y and about the centre, shape (3, 3)."""
-        return np.diag([self.area, self.area, self.moment])
-
-    def recoil(self, _: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: 0, 0 and the angular velocity [rad/s]."""
-        return np.array([0.0, 0.0, self.swirl / self.moment])
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceMass:
-    """Mass and moments of inertia of a body of density 1 in space, in its own frame."""
+    """Mass and moments of inertia of a body of density 1, in its own frame; in the plane per metre of depth."""
 
     volume: float
-    """Volume [m^3]."""
-    centre: tuple[float, float, float]
-    """Centre of the volume [m]."""
-    centre_rate: tuple[float, float, float]
-    """Velocity that the deformation gives to the centre [m/s]."""
+    """Volume; in the plane the area of the cross-section [m^3, m^2]."""
+    centre: tuple[float, ...]
+    """Centre of the volume, along each axis [m]."""
+    centre_rate: tuple[float, ...]
+    """Velocity that the deformation gives to the centre, along each axis [m/s]."""
     moments: np.ndarray
-    """Tensor of inertia of the volume about the centre, shape (3, 3) [m^5]."""
-    swirl: tuple[float, float, float]
-    """Angular momentum of the deformation about the centre [m^5/s]."""
+    """Tensor of inertia of the volume about the centre: about z alone in the plane, shape (1, 1), else (3, 3) [m^4,
+    m^5]."""
+    swirl: tuple[float, ...]
+    """Angular momentum of the deformation about the centre: about z in the plane, else about x, y and z [m^4/s,
+    m^5/s]."""
 
     @property
-    def size(self) -> float:
-        """The volume, by which the density is multiplied to give the mass [m^3]."""
-        return self.volume
+    def _axes(self) -> int:
+        return len(self.centre)
 
     def inertia(self, matrix: np.ndarray) -> np.ndarray:
-        """Return the mass matrix over the density for motions along and about the world's axes, shape (6, 6).
+        """Return the mass matrix over the density for motions along and about the world's axes.
+
+        The shape is (3, 3) in the plane and (6, 6) in space.
 
         Args:
             matrix: rotation matrix from the body's frame to the world's, shape (3, 3).
         """
-        inertia_matrix = np.zeros((6, 6))
-        inertia_matrix[:3, :3], inertia_matrix[3:, 3:] = self.volume * np.eye(3), matrix @ self.moments @ matrix.T
+        ndim, turns = self._axes, len(self.swirl)
+        turn = matrix[-turns:, -turns:]
+        inertia_matrix = np.zeros((ndim + turns, ndim + turns))
+        inertia_matrix[:ndim, :ndim], inertia_matrix[ndim:, ndim:] = (
+            self.volume * np.eye(ndim),
+            turn @ self.moments @ turn.T,
+        )
         return inertia_matrix
 
     def recoil(self, matrix: np.ndarray) -> np.ndarray:
-        """Return the velocity that the deformation takes from the frame: 0, 0, 0 and the angular velocity [rad/s]."""
-        return np.concatenate([np.zeros(3), matrix @ np.linalg.solve(self.moments, self.swirl)])
+        """Return the velocity that the deformation takes from the frame: 0 along each axis, then the angular velocity.
+
+        Args:
+            matrix: rotation matrix from the body's frame to the world's, shape (3, 3).
+        """
+        turns = len(self.swirl)
+        return np.concatenate(
+            [np.zeros(self._axes), matrix[-turns:, -turns:] @ np.linalg.solve(self.moments, self.swirl)]
+        )
 
 
 def tensor(second: np.ndarray) -> np.ndarray:
@@ -89,7 +75,9 @@ def of_outline(x: np.ndarray, y: np.ndarray) -> Mass:
     cx, cy = float(((x + p) * cross).sum() / (6 * area)), float(((y + q) * cross).sum() / (6 * area))
     polar = float((((x * x + x * p + p * p) + (y * y + y * q + q * q)) * cross).sum() / 12)
     moment = polar - area * (cx**2 + cy**2)
-    return Mass(area=area, centre=(cx, cy), centre_rate=(0.0, 0.0), moment=moment, swirl=0.0)
+    return Mass(
+        volume=area, centre=(cx, cy), centre_rate=(0.0, 0.0), moments=np.array([[moment]]), swirl=(0.0,)
+    )  # fmt: skip
 
 
 def of_midline(spine: np.ndarray) -> Mass:
@@ -101,11 +89,11 @@ def of_midline(spine: np.ndarray) -> Mass:
         spine: rows x, y, heading, half-width and the rates of x, y and heading, at the stations [m, rad, s].
     """
     w = (spine[3, 1:] + spine[3, :-1]) / 2
-    area, centre, rate, second, swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)
-    return Mass(area=area, centre=centre, centre_rate=rate, moment=second[0], swirl=swirl)
+    area, centre, rate, (moment, *_), swirl = _of_sections(spine, 2 * w, 2 * w**3 / 3)
+    return Mass(volume=area, centre=centre, centre_rate=rate, moments=np.array([[moment]]), swirl=(swirl,))
 
 
-def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
+def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> Mass:
     """Return the mass of a body with elliptic sections from the rows of its midline.
 
     Args:
@@ -116,7 +104,7 @@ def of_trunk(spine: np.ndarray, half_height: np.ndarray) -> SpaceMass:
     volume, centre, rate, (moment, xx, xy), swirl = _of_sections(spine, np.pi * w * h, np.pi * w**3 * h / 4)
     zz = float((np.pi * w * h**3 / 4 * np.hypot(np.diff(spine[0]), np.diff(spine[1]))).sum())
     second = np.array([[xx, xy, 0.0], [xy, moment - xx, 0.0], [0.0, 0.0, zz]])
-    return SpaceMass(
+    return Mass(
         volume=volume, centre=(*centre, 0.0), centre_rate=(*rate, 0.0), moments=tensor(second), swirl=(0.0, 0.0, swirl)
     )
 

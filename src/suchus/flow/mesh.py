@@ -10,6 +10,7 @@ which is right everywhere around a closed mesh.
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numba import prange
@@ -19,10 +20,10 @@ from suchus.core.isosurface import isosurface
 from suchus.core.reading import read_mesh
 from suchus.flow.compiled import kernel_part, signed, threaded
 from suchus.flow.markers import Markers
-from suchus.flow.mass import SpaceMass, tensor
+from suchus.flow.mass import Mass, tensor
 from suchus.flow.pose import Pose
-from suchus.flow.shape import check_positive
-from suchus.flow.solid import SpaceField, SpaceShape, is_blunt
+from suchus.flow.shape import Axes, Field, Shape, check_positive
+from suchus.flow.solid import box_around, is_blunt, rigid_velocity, skin_spins
 
 _SYMMETRY_TOLERANCE = 1e-6
 """Distance of corners from their mirror images, over the mesh's size, up to which it is symmetric [-]."""
@@ -39,7 +40,7 @@ _NEWTON = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class TriangleMesh(SpaceShape):
+class TriangleMesh(Shape):
     """A rigid body inside a closed mesh of triangles.
 
     Triangles of about a cell are enough; the time that it takes to place the body grows with their number.
@@ -47,6 +48,8 @@ class TriangleMesh(SpaceShape):
     Raises:
         InvalidDesign: on creation, for a mesh that is open, wound unevenly or looks inwards.
     """
+
+    ndim: ClassVar[int] = 3
 
     vertices: np.ndarray
     """Corners in the body's own frame, shape (vertex, 3) [m]."""
@@ -67,16 +70,17 @@ class TriangleMesh(SpaceShape):
         _refuse_open(vertices, faces)
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
-        if self.volume(0.0) <= 0:
+        volume = self.volume(0.0)
+        if volume <= 0:
             raise InvalidDesign(
-                f"the faces of the mesh look inwards: its volume is {self.volume(0.0):.3g} m3. Turn them round, as "
+                f"the faces of the mesh look inwards: its volume is {volume:.3g} m3. Turn them round, as "
                 "mesh.invert() of trimesh does."
             )
         object.__setattr__(self, "_normals", pseudo_normals(vertices, faces))
         object.__setattr__(self, "_max_thickness", self._max_ball_diameter())
 
     @property
-    def mirror_symmetry(self) -> tuple[bool, bool, bool]:  # type: ignore[override]
+    def mirror_symmetry(self) -> tuple[bool, ...]:  # type: ignore[override]
         """Whether the planes through the origin across x, y and z cut it into halves that are images of each other."""
         from scipy.spatial import KDTree  # noqa: PLC0415  a fifth of the time of an import of flow
 
@@ -85,45 +89,25 @@ class TriangleMesh(SpaceShape):
         x, y, z = (float(np.max(tree.query(mirror_image)[0])) <= tolerance for mirror_image in mirrored)
         return x, y, z
 
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window, as far as ``reach``."""
-        frame = pose.in_dimensions(3)
-        px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
-        window_field = np.zeros((4, z.size, y.size, x.size))
-        h = float(x[1] - x[0]) if x.size > 1 else float(reach)
-        normals = np.ascontiguousarray(self._normals @ frame.matrix.T)
-        paint_mesh(
-            window_field, px, py, pz, np.ascontiguousarray(self._world_vertices(frame)[self.faces]), normals,
-            float(reach), h,
-        )  # fmt: skip
-        u, v, w = (
-            np.ascontiguousarray(np.broadcast_to(rate, window_field[0].shape))
-            for rate in frame.velocity_at((px, py[:, None], pz[:, None, None]))
-        )
-        return SpaceField(
-            window_field[0],
-            (window_field[1], window_field[2], window_field[3]),
-            (u, v, w),
-            np.full(window_field[0].shape, np.inf),
-        )
-
-    def _world_vertices(self, frame: Pose) -> np.ndarray:
-        """Return the corners in the world, shape (vertex, 3) [m]."""
-        return np.stack(frame.to_world_3d(self.vertices.T), axis=1)
+        vertices = np.stack(pose.to_world(self.vertices.T))
+        normals = np.ascontiguousarray(self._normals @ pose.matrix.T)
+        distance, *normal = paint_triangles(vertices, self.faces, normals, points, reach)
+        return Field(distance, tuple(normal), rigid_velocity(points, pose), np.full(distance.shape, np.inf))
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return the middles of the triangles, of large ones those of equal parts."""
-        frame = pose.in_dimensions(3)
-        points, areas, normals = face_centres(self._world_vertices(frame)[self.faces], spacing)
-        spins = np.broadcast_to(frame.spins[:, None], points.shape)
+        vertices = np.stack(pose.to_world(self.vertices.T), axis=1)
+        points, areas, normals = face_centres(vertices[self.faces], spacing)
         return Markers(
-            points=points, weight=areas, velocities=np.stack(frame.velocity_at(points)), normals=normals, spins=spins
-        )
+            points=points, weight=areas, velocities=np.stack(pose.velocity_at(points)), normals=normals,
+            spins=skin_spins(pose, points),
+        )  # fmt: skip
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the corners."""
-        vertices = self._world_vertices(pose.in_dimensions(3))
-        return tuple(np.stack([vertices.min(axis=0), vertices.max(axis=0)], axis=1).ravel().tolist())
+        return box_around(np.stack(pose.to_world(self.vertices.T)))
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter of the largest ball inside, to a twentieth of it."""
@@ -137,7 +121,7 @@ class TriangleMesh(SpaceShape):
         step, lower_bound, upper_bound = reach / _PROBES, self.vertices.min(axis=0), self.vertices.max(axis=0)
         for _ in range(2):
             x, y, z = (np.arange(a - step, b + 2 * step, step) for a, b in zip(lower_bound, upper_bound, strict=True))
-            depth = -self.measure(x, y, z, 0.0, Pose(), reach).distance
+            depth = -self.measure((x, y, z), 0.0, Pose(), reach).distance
             k, j, i = np.unravel_index(int(depth.argmax()), depth.shape)
             best = np.array([x[i], y[j], z[k]])
             lower_bound, upper_bound, step = best - step, best + step, step / 4
@@ -148,11 +132,7 @@ class TriangleMesh(SpaceShape):
         """Whether it is about as long along each axis."""
         return is_blunt(np.ptp(self.vertices, axis=0))
 
-    def volume(self, time: float) -> float:
-        """Return the volume."""
-        return float(_six_volumes(self.vertices[self.faces]).sum()) / 6
-
-    def mass(self, time: float) -> SpaceMass:
+    def mass(self, time: float) -> Mass:
         """Return volume, centre and moments, exact for the mesh."""
         return mass_of_mesh(self.vertices[self.faces])
 
@@ -163,7 +143,7 @@ def _six_volumes(corners: np.ndarray) -> np.ndarray:
     return volumes
 
 
-def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
+def mass_of_mesh(corners: np.ndarray) -> Mass:
     """Return the mass inside a rigid closed mesh, from the corners of its faces (face, corner, axis) [m]."""
     six, total, zero = _six_volumes(corners), corners.sum(axis=1), (0.0, 0.0, 0.0)
     volume = float(six.sum()) / 6
@@ -171,7 +151,7 @@ def mass_of_mesh(corners: np.ndarray) -> SpaceMass:
     second = (np.einsum("f,fi,fj->ij", six, total, total) + np.einsum("f,fki,fkj->ij", six, corners, corners)) / 120
     cx, cy, cz = centre.tolist()
     moments = tensor(second - volume * np.outer(centre, centre))
-    return SpaceMass(volume=volume, centre=(cx, cy, cz), centre_rate=zero, moments=moments, swirl=zero)
+    return Mass(volume=volume, centre=(cx, cy, cz), centre_rate=zero, moments=moments, swirl=zero)
 
 
 def face_centres(corners: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -323,6 +303,25 @@ def _middles(count: int) -> np.ndarray:
     weight_1 = np.concatenate([i[is_upright] + 1 / 3, i[is_inverted] + 2 / 3]) / count
     weight_2 = np.concatenate([j[is_upright] + 1 / 3, j[is_inverted] + 2 / 3]) / count
     return np.stack([1 - weight_1 - weight_2, weight_1, weight_2], axis=1)
+
+
+def paint_triangles(
+    vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray, points: Axes, reach: float
+) -> np.ndarray:
+    """Return signed distance [m] and normal [-] of a mesh on a window, shape (4, z, y, x); see ``paint_mesh``.
+
+    Args:
+        vertices: corners, shape (3, vertex) [m].
+        faces: indices of each triangle's corners, shape (face, 3).
+        normals: pseudo-normals, shape (face, 7, 3).
+        points: coordinates of the window along each axis [m].
+        reach: distance up to which both are exact [m].
+    """
+    x, y, z = (np.ascontiguousarray(line, float) for line in points)
+    window_field = np.zeros((4, z.size, y.size, x.size))
+    h = float(x[1] - x[0]) if x.size > 1 else float(reach)
+    paint_mesh(window_field, x, y, z, np.ascontiguousarray(vertices.T[faces]), normals, float(reach), h)
+    return window_field
 
 
 @kernel_part

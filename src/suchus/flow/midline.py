@@ -1,5 +1,6 @@
 """A body given by its midline and the half-width along it: fish, robots, foils."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from math import isfinite
@@ -12,7 +13,8 @@ from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, of_midline
 from suchus.flow.paint import paint, ring, section_motions
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Shape, check_positive
+from suchus.flow.shape import Axes, Field, Shape, check_positive
+from suchus.flow.solid import box_around, pieces_of_line
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,9 +107,9 @@ class MidlineState:
 
     def in_world(self, pose: Pose) -> "MidlineState":
         """Return the midline in the world."""
-        x, y = pose.to_world(self.x, self.y)
-        vx, vy = pose.rotate_in_plane(self.x_rate, self.y_rate)
-        cx, cy = pose.velocity_in_plane(x, y)
+        x, y = pose.to_world((self.x, self.y))
+        vx, vy = pose.rotate((self.x_rate, self.y_rate))
+        cx, cy = pose.velocity_at((x, y))
         return replace(
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,
@@ -118,20 +120,19 @@ MAX_PARTS = 64
 """Parts that a body may be divided into [-]; those of all bodies are counted in one byte."""
 
 
-def check_cuts(cuts: tuple[float, ...], body_kind: str) -> None:
+def check_cuts(cuts: tuple[float, ...]) -> None:
     """Refuse cuts that divide nothing.
 
     Args:
-        cuts: arc lengths at which a body is divided [m].
-        body_kind: what the body is called in messages.
+        cuts: arc lengths along a midline at which a body is divided [m].
 
     Raises:
         InvalidDesign: they do not rise from 0, or are too many.
     """
     if not all(isfinite(arc) for arc in cuts) or (np.diff((0.0, *cuts)) <= 0).any():
-        raise InvalidDesign(f"the cuts of a {body_kind} are at {cuts} m; give rising arc lengths above 0.")
+        raise InvalidDesign(f"the cuts of a midline are at {cuts} m; give rising arc lengths above 0.")
     if len(cuts) >= MAX_PARTS:
-        raise InvalidDesign(f"a {body_kind} has {len(cuts)} cuts; up to {MAX_PARTS - 1} are allowed.")
+        raise InvalidDesign(f"a midline has {len(cuts)} cuts; up to {MAX_PARTS - 1} are allowed.")
 
 
 _STATE_NAMES = tuple(field.name for field in fields(MidlineState))
@@ -192,8 +193,8 @@ class CachedMidline:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Midline(Shape):
-    """A body that bends: its cross-sections stay straight and square to the midline."""
+class Spined(Shape):
+    """A body along a midline, in the plane or in space: its cross-sections stay straight and square to the midline."""
 
     spine: Callable[[float], MidlineState]
     """The midline at every time [s]."""
@@ -204,7 +205,8 @@ class Midline(Shape):
     [m]."""
 
     def __post_init__(self) -> None:
-        check_cuts(self.cuts, "midline")
+        """Refuse cuts that divide nothing."""
+        check_cuts(self.cuts)
 
     @property
     def rigid(self) -> bool:
@@ -216,16 +218,32 @@ class Midline(Shape):
         """Parts that the cuts leave [-]."""
         return len(self.cuts) + 1
 
+    @abstractmethod
+    def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
+        """Return where the midline is at arc lengths, in the world, shape (point, axis) [m].
+
+        Args:
+            time: time [s].
+            pose: pose of the body's frame.
+            arc: arc lengths of the points [m].
+        """
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Midline(Spined):
+    """A body in the plane that bends."""
+
     def _world_midline(self, time: float, pose: Pose) -> MidlineState:
         """Return the midline at a time in the world."""
         spine = self.spine
         return spine.in_world(time, pose) if isinstance(spine, CachedMidline) else spine(time).in_world(pose)
 
-    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return the field on the points of a window."""
-        midline = self._world_midline(time, pose)
+        (x, y), midline = points, self._world_midline(time, pose)
         h = (x[-1] - x[0]) / (x.size - 1)
-        field = Field(*paint(midline.rows, midline.half_width_rates, x[0], y[0], h, x.size, y.size, float(reach)))
+        fields = paint(midline.rows, midline.half_width_rates, x[0], y[0], h, x.size, y.size, float(reach))
+        field = Field(fields[0], (fields[1], fields[2]), (fields[3], fields[4]), fields[5])
         if self.cuts:
             field.part_index = self._nearest_parts(midline, x, y, field.distance < reach)
         return field
@@ -251,7 +269,7 @@ class Midline(Shape):
         return part_index
 
     def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return where the midline is at arc lengths [m], in the world, shape (point, 2) [m]."""
+        """Return where the midline is at arc lengths, in the world, shape (point, 2) [m]; see ``Spined``."""
         midline = self._world_midline(time, pose)
         return np.column_stack([np.interp(arc, midline.arc, line) for line in (midline.x, midline.y)])
 
@@ -281,21 +299,18 @@ class Midline(Shape):
             part_index=part_index, station=s, side=side,
         )  # fmt: skip
 
-    def bounds(self, time: float, pose: Pose) -> tuple[float, float, float, float]:
+    def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the rectangle around the outline."""
-        outline = ring(self._world_midline(time, pose).rows)
-        return (
-            float(outline[0].min()), float(outline[0].max()), float(outline[1].min()), float(outline[1].max())
-        )  # fmt: skip
+        return box_around(ring(self._world_midline(time, pose).rows))
 
-    def centreline(self, time: float, pose: Pose) -> np.ndarray | None:
+    def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the midline without its round ends, where the half-width is larger than the distance to the tip."""
         midline = self._world_midline(time, pose)
         to_tip = np.minimum(midline.arc, midline.arc[-1] - midline.arc)
         slender_stations = np.flatnonzero(midline.half_width < to_tip)
         if slender_stations.size < 2:
             return None
-        return np.array([midline.x, midline.y])[:, slender_stations[0] : slender_stations[-1] + 1]
+        return pieces_of_line(np.array([midline.x, midline.y])[:, slender_stations[0] : slender_stations[-1] + 1])
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""

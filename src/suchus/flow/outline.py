@@ -13,7 +13,8 @@ from suchus.core.reading import read_text
 from suchus.flow.mesh import TriangleMesh, mesh_of_sdf
 from suchus.flow.paint import measure_outline, paint_outline
 from suchus.flow.pose import Pose
-from suchus.flow.shape import Field, Solid, check_positive
+from suchus.flow.shape import Axes, Field, check_positive
+from suchus.flow.solid import PlaneSolid, Solid, rigid_velocity
 
 _STEPS = 200  # steps per size of a body with which its outline is traced
 _MIN_EXACT_FRACTION = 0.9  # fraction of an outline on which the gradient of a true distance is 1; corners are the rest
@@ -23,7 +24,7 @@ _SUBDIVISIONS = 8  # points per step after the refinement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Polygon(Solid):
+class Polygon(PlaneSolid):
     """A polygon whose edges do not cross.
 
     Raises:
@@ -49,21 +50,18 @@ class Polygon(Solid):
             )
         object.__setattr__(self, "corners", corners if _area(corners) > 0 else corners[::-1].copy())
 
-    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def distance(self, *points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m]."""
-        px, py = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        px, py = np.broadcast_arrays(*(np.asarray(line, float) for line in points))
         fields = np.empty((3, px.size))
         measure_outline(fields, px.ravel(), py.ravel(), self._outline_points, self._flat)
         d, nx, ny = fields.reshape(3, *px.shape)
         return d, nx, ny
 
-    def measure(self, x: np.ndarray, y: np.ndarray, time: float, pose: Pose, reach: float) -> Field:
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
         """Return distance, normal and velocity on the points of a window; see ``Shape.measure``."""
-        h = float(x[-1] - x[0]) / (x.size - 1)
-        outline = np.stack(pose.to_world(*self._outline_points))
-        d, nx, ny = paint_outline(outline, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), self._flat)
-        vx, vy = (np.broadcast_to(v, d.shape) for v in pose.velocity_in_plane(*np.meshgrid(x, y)))
-        return Field(d, nx, ny, vx, vy, np.full(d.shape, np.inf))
+        d, nx, ny = paint_polygon(np.stack(pose.to_world(self._outline_points)), points, reach, self._flat)
+        return Field(d, (nx, ny), rigid_velocity(points, pose), np.full(d.shape, np.inf))
 
     @property
     def _outline_points(self) -> np.ndarray:
@@ -86,6 +84,20 @@ class Polygon(Solid):
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the diameter of the largest circle inside, to a hundredth of the outline's size."""
         return np.zeros(1), np.full(1, _widest(self))
+
+
+def paint_polygon(corners: np.ndarray, points: Axes, reach: float, flat: float) -> np.ndarray:
+    """Return signed distance [m] and normal [-] of a polygon on a window, shape (3, y, x); see ``paint_outline``.
+
+    Args:
+        corners: its corners, counter-clockwise, shape (2, corner) [m].
+        points: coordinates of the window along each axis [m].
+        reach: distance up to which both are exact [m].
+        flat: distance below which a point has the normal of its edge [m].
+    """
+    x, y = points
+    h = float(x[-1] - x[0]) / (x.size - 1)
+    return paint_outline(corners, float(x[0]), float(y[0]), h, x.size, y.size, float(reach), flat)
 
 
 def from_outline(points: np.ndarray | Path | str) -> Polygon:
@@ -177,7 +189,7 @@ def _is_heading(rows: list[list[str]]) -> bool:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Implicit(Solid):
+class Implicit(PlaneSolid):
     """The body where a function is negative; see ``from_sdf``.
 
     Raises:
@@ -207,12 +219,12 @@ class Implicit(Solid):
         step = self._step
         return self.sdf(x + step, y) - self.sdf(x - step, y), self.sdf(x, y + step) - self.sdf(x, y - step)
 
-    def distance(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def distance(self, *points: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return signed distance [m] and outward normal (x, y) [-] at points of the body's frame [m].
 
         The normal is a central difference.
         """
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        x, y = np.broadcast_arrays(*(np.asarray(line, float) for line in points))
         (gx, gy), value = self._rises(x, y), np.asarray(self.sdf(x, y), float)
         size = np.hypot(gx, gy)
         flat = size < 1e-3 * self._step * (self._min_gradient or 1.0)  # at the centre any direction is right
@@ -239,6 +251,8 @@ def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, float, float
 def from_sdf(
     function: Callable[..., np.ndarray], box: tuple[float, float, float, float, float, float]
 ) -> TriangleMesh: ...
+@overload
+def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Implicit | TriangleMesh: ...
 def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Implicit | TriangleMesh:
     """Return the body where ``function(x, y)`` is negative, in one piece without holes; in space ``function(x, y, z)``.
 
@@ -261,40 +275,76 @@ def from_sdf(function: Callable[..., np.ndarray], box: tuple[float, ...]) -> Imp
     return Implicit(sdf=function, box=(x0, x1, y0, y1))
 
 
-def union(shape: Solid, other_shape: Solid) -> Implicit:
-    """Return the body that is inside either of two, which must overlap."""
+def union(shape: Solid, other_shape: Solid) -> Implicit | TriangleMesh:
+    """Return the body that is inside either of two, which must overlap; in space it becomes a mesh.
+
+    Raises:
+        InvalidDesign: a shape that is no ``Solid``, or one in the plane and one in space.
+    """
     return _joined(shape, other_shape, np.minimum)
 
 
-def difference(shape: Solid, other_shape: Solid) -> Implicit:
-    """Return the body inside the first and not inside the second, which must leave it in one piece without a hole."""
+def difference(shape: Solid, other_shape: Solid) -> Implicit | TriangleMesh:
+    """Return the body inside the first and not inside the second, which must leave it in one piece without a hole.
+
+    In space it becomes a mesh.
+
+    Raises:
+        InvalidDesign: a shape that is no ``Solid``, or one in the plane and one in space.
+    """
     return _joined(shape, other_shape, lambda a, b: np.maximum(a, -b))
 
 
-def scaled(shape: Solid, factor: float) -> Implicit:
-    """Return a shape enlarged about the origin of its frame.
+def scaled(shape: Solid, factor: float) -> Implicit | TriangleMesh:
+    """Return a shape enlarged about the origin of its frame; in space it becomes a mesh.
 
     Args:
         shape: the shape.
         factor: ratio of the new size to the old one [-].
 
     Raises:
-        InvalidDesign: the factor is not positive.
+        InvalidDesign: the factor is not positive, or the shape is no ``Solid``.
     """
     check_positive("factor", factor)
-    return from_sdf(lambda x, y: factor * shape.distance(x / factor, y / factor)[0], _box([shape], factor))
+    _check_solids(shape)
+    return from_sdf(lambda *places: factor * shape.distance(*(p / factor for p in places))[0], _box([shape], factor))
 
 
-def _joined(shape: Solid, other_shape: Solid, combine: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Implicit:
+def _joined(
+    shape: Solid, other_shape: Solid, combine: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> Implicit | TriangleMesh:
+    _check_solids(shape, other_shape)
     return from_sdf(
-        lambda x, y: combine(shape.distance(x, y)[0], other_shape.distance(x, y)[0]), _box([shape, other_shape], 1.0)
+        lambda *places: combine(shape.distance(*places)[0], other_shape.distance(*places)[0]),
+        _box([shape, other_shape], 1.0),
     )
 
 
-def _box(shapes: list[Solid], factor: float) -> tuple[float, float, float, float]:
-    x, y = np.concatenate([np.stack(shape.outline(512)) for shape in shapes], axis=1) * factor
-    margin = 0.05 * max(float(np.ptp(x)), float(np.ptp(y)))
-    return float(x.min()) - margin, float(x.max()) + margin, float(y.min()) - margin, float(y.max()) + margin
+def _check_solids(*shapes: Solid) -> None:
+    """Refuse shapes without a distance at every point, and plane ones together with ones in space.
+
+    Raises:
+        InvalidDesign: naming what there is.
+    """
+    kinds = [type(shape).__name__ for shape in shapes]
+    if not all(isinstance(shape, Solid) for shape in shapes):
+        raise InvalidDesign(
+            f"the shapes to be joined or scaled are {' and '.join(kinds)}; give a Solid, which has a distance at every "
+            f"point, such as an Ellipse, a Polygon, a Sphere or a Spherocylinder."
+        )
+    if len({shape.ndim for shape in shapes}) > 1:
+        raise InvalidDesign(
+            f"{' and '.join(kinds)} cannot be joined: one is plane and one is in space. Give two alike."
+        )
+
+
+def _box(shapes: list[Solid], factor: float) -> tuple[float, ...]:
+    """Return a rectangle or a box around scaled solids in their frame with a margin: x0, x1, y0, y1, and z0, z1 [m]."""
+    boxes = factor * np.array([shape.extents() for shape in shapes])
+    low_corner, high_corner = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    margin = 0.05 * float((high_corner - low_corner).max())
+    ends = zip((low_corner - margin).tolist(), (high_corner + margin).tolist(), strict=True)
+    return tuple(end for pair in ends for end in pair)
 
 
 def _size(box: tuple[float, float, float, float]) -> float:
@@ -333,7 +383,7 @@ def _crossing(corners: np.ndarray) -> tuple[int, int] | None:
     return None
 
 
-def _widest(shape: Solid) -> float:
+def _widest(shape: PlaneSolid) -> float:
     """Return the diameter of the largest circle inside the outline of a shape [m]."""
     x, y = shape.outline(512)
     gx, gy = np.meshgrid(np.linspace(x.min(), x.max(), 101), np.linspace(y.min(), y.max(), 101))

@@ -10,11 +10,10 @@ from suchus.flow.body import AnyBody, Body
 from suchus.flow.compiled import PAD
 from suchus.flow.free import FreeBody
 from suchus.flow.grid import POSITION_TOLERANCE, Grid
-from suchus.flow.midline import Midline, MidlineState
+from suchus.flow.midline import MidlineState, Spined
 from suchus.flow.pose import Oscillation, angle_text
 from suchus.flow.sides import NAMES, Inflow, Outflow, Sides
 from suchus.flow.swimmer import to_degrees_of_freedom
-from suchus.flow.trunk import Trunk
 
 if TYPE_CHECKING:
     from suchus.flow.setup import Setup
@@ -175,7 +174,7 @@ def heading_text(body: AnyBody, time: float) -> str | None:
         body: the body.
         time: when [s].
     """
-    if not isinstance(body.shape, Midline | Trunk):
+    if not isinstance(body.shape, Spined):
         return None
     spine: MidlineState = body.shape.spine(time)
     direction = np.arctan2(np.diff(spine.y), np.diff(spine.x))

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import zip_longest
 from math import cos, degrees, hypot, isfinite, pi, radians, sin
+from operator import add, mul
 from typing import Any
 
 import numpy as np
@@ -16,19 +18,29 @@ ROTATION_PLANES = {2: ((0, 1),), 3: ((1, 2), (2, 0), (0, 1))}
 """The planes of rotation for 2 and 3 axes: for each rotation axis, the first and the second axis of its plane."""
 
 
-def cross(
-    first_vector: Sequence[float] | np.ndarray, second_vector: Sequence[float] | np.ndarray
-) -> tuple[Any, Any, Any]:
-    """Return the vector product of two vectors of shape (3, ...), component by component."""
+def cross(first_vector: Sequence[Any] | np.ndarray, second_vector: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+    """Return the vector product of two vectors of shape (3, ...), component by component.
+
+    For a second vector in the plane, of shape (2, ...), only the first one's component about z counts.
+    """
+    if len(second_vector) == 2:
+        turn, (x, y) = first_vector[-1], second_vector
+        return -turn * y, turn * x
     (a, b, c), (x, y, z) = first_vector, second_vector
     return b * z - c * y, c * x - a * z, a * y - b * x
 
 
-def rotate_vectors(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-    """Return vectors of shape (3, ...), rotated by a matrix of shape (3, 3), component by component."""
-    x, y, z = vectors
-    rotated_x, rotated_y, rotated_z = ((a * x + b * y) + c * z for a, b, c in matrix.tolist())
-    return rotated_x, rotated_y, rotated_z
+def rotate_vectors(matrix: np.ndarray, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+    """Return vectors of shape (axis, ...), rotated by a matrix, component by component.
+
+    Args:
+        matrix: rotation matrix, shape (3, 3); vectors in the plane, of two axes, are turned about z by its first two
+            rows and columns.
+        vectors: the vectors, shape (2, ...) or (3, ...).
+    """
+    ndim = len(vectors)
+    rows = matrix[:ndim, :ndim].tolist()
+    return tuple([reduce(add, map(mul, row, vectors)) for row in rows])
 
 
 def length(parts: Sequence[float] | np.ndarray) -> float:
@@ -143,70 +155,47 @@ class Pose:
         """Angular velocity about x, y and z, shape (3,) [rad/s]."""
         return np.array([self.spin_x, self.spin_y, self.spin])
 
-    def to_world_3d(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the body's frame in the world frame, in space, component by component [m].
+    def rotate(self, vectors: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+        """Return directions of the body's frame in the world frame, component by component.
 
         Args:
-            points: x, y and z in the body's frame, shape (3, ...) [m].
+            vectors: components along each axis of the body's frame, shape (2, ...) or (3, ...).
         """
-        x, y, z = (
-            coordinate + origin
-            for coordinate, origin in zip(
-                rotate_vectors(self.matrix, points), self.in_dimensions(3).position, strict=True
-            )
-        )
-        return x, y, z
+        return rotate_vectors(self.matrix, vectors)
 
-    def to_body_3d(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return points of the world frame in the body's frame, in space, component by component [m]."""
-        relative = [
-            coordinate - origin for coordinate, origin in zip(points, self.in_dimensions(3).position, strict=True)
-        ]
-        return rotate_vectors(self.matrix.T, relative)
-
-    def velocity_at(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, Any, Any]:
-        """Return the velocity of the rigid motion at points in space, component by component [m/s].
+    def to_world(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+        """Return points of the body's frame in the world frame, component by component [m].
 
         Args:
-            points: x, y and z in the world frame, shape (3, ...) [m].
-
-        Returns:
-            Components of the velocity along the axes x, y and z of the world, each of the points' shape [m/s].
+            points: coordinates along each axis of the body's frame, shape (2, ...) or (3, ...) [m].
         """
-        pose = self.in_dimensions(3)
-        relative = [coordinate - origin for coordinate, origin in zip(points, pose.position, strict=True)]
-        vx, vy, vz = (
-            linear + rotational for linear, rotational in zip(pose.velocity, cross(pose.spins, relative), strict=True)
-        )
-        return vx, vy, vz
+        return tuple([a + b for a, b in zip(self.rotate(points), self._along(self.position, len(points)), strict=True)])
 
-    def to_world(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return points of the body's frame in the world [m]."""
-        wx, wy = self.rotate_in_plane(x, y)
-        return wx + self.position[0], wy + self.position[1]
-
-    def to_body(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return points of the world in the body's frame [m]."""
-        c, s = cos(self.angle), sin(self.angle)
-        dx, dy = x - self.position[0], y - self.position[1]
-        return c * dx + s * dy, c * dy - s * dx
-
-    def rotate_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return directions of the body's frame in the world frame, in the plane."""
-        c, s = cos(self.angle), sin(self.angle)
-        return c * x - s * y, s * x + c * y
-
-    def velocity_in_plane(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the velocity of the rigid motion at points in the plane [m/s].
+    def to_body(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+        """Return points of the world frame in the body's frame, component by component [m].
 
         Args:
-            x: points in the world frame [m].
-            y: points in the world frame [m].
+            points: coordinates along each axis of the world, shape (2, ...) or (3, ...) [m].
         """
-        return (
-            self.velocity[0] - self.spin * (y - self.position[1]),
-            self.velocity[1] + self.spin * (x - self.position[0]),
-        )
+        return rotate_vectors(self.matrix.T, self._arms(points))
+
+    def velocity_at(self, points: Sequence[Any] | np.ndarray) -> tuple[Any, ...]:
+        """Return the velocity of the rigid motion at points, component by component [m/s].
+
+        Args:
+            points: coordinates along each axis of the world, shape (2, ...) or (3, ...) [m].
+        """
+        turning = cross((self.spin_x, self.spin_y, self.spin), self._arms(points))
+        return tuple([a + b for a, b in zip(self._along(self.velocity, len(points)), turning, strict=True)])
+
+    def _arms(self, points: Sequence[Any] | np.ndarray) -> list[Any]:
+        """Return the vectors from the origin of the body's frame to points of the world, component by component [m]."""
+        return [a - b for a, b in zip(points, self._along(self.position, len(points)), strict=True)]
+
+    @staticmethod
+    def _along(vector: tuple[float, ...], ndim: int) -> tuple[float, ...]:
+        """Return the components of a vector along two axes or three; a missing one along z is 0."""
+        return vector if len(vector) == ndim else (*vector, 0.0)[:ndim]
 
 
 Motion = Callable[[float], Pose]

@@ -16,7 +16,7 @@ from suchus.flow.free import FreeBody
 from suchus.flow.grid import Grid, check_kinds, check_memory
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.markers import Markers, extent, kernel_array, max_speed
-from suchus.flow.midline import Midline, check_state
+from suchus.flow.midline import Spined, check_state
 from suchus.flow.nest import patch_sides
 from suchus.flow.resolution import (
     MAX_FORCE_ERROR,
@@ -27,9 +27,7 @@ from suchus.flow.resolution import (
 )
 from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.sides import NAMES, Periodic, Sides
-from suchus.flow.solid import SpaceShape
 from suchus.flow.swimmer import Swimmer
-from suchus.flow.trunk import Trunk
 
 MIN_LAYER_CELLS = required_cells(MAX_FORCE_ERROR)
 """Fewest cells across a boundary layer of thickness L / sqrt(Re), for bodies other than blunt ones in space [-]."""
@@ -280,7 +278,7 @@ class Setup:
         """
         thin_fractions = {}
         for body in self.bodies:
-            if isinstance(body.shape, Midline | Trunk):
+            if isinstance(body.shape, Spined):
                 check_state(body.shape.spine(0.0), 0.0)
             pose = body.pose(0.0) if isinstance(body, Body) else Swimmer.from_body(body).pose(body.shape.mass(0.0))
             pose = pose.in_dimensions(self.grid.ndim)
@@ -340,7 +338,7 @@ class Setup:
         """
         length = extent(kernel_array(markers.points))
         speed = max_speed(kernel_array(markers.velocities), np.array(stream, float))
-        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), has_blunt_shape(body)
+        cells, is_blunt = cells_across(length, speed, self.viscosity, self.grid.cell), body.shape.is_compact
         error, min_cells = (
             estimate_force_error(cells, is_compact=is_blunt),
             required_cells(MAX_FORCE_ERROR, is_compact=is_blunt),
@@ -369,7 +367,7 @@ class Setup:
         if self.coarse or error <= WARNING_FORCE_ERROR:
             return None
         cells, better = (
-            required_cells(target_error, is_compact=has_blunt_shape(body))
+            required_cells(target_error, is_compact=body.shape.is_compact)
             for target_error in (error, WARNING_FORCE_ERROR)
         )
         times = ceil(100 * better / cells) / 100
@@ -381,8 +379,3 @@ class Setup:
             kind="cells",
             size=error,
         )
-
-
-def has_blunt_shape(body: Body | FreeBody) -> bool:
-    """Return whether a body is a blunt one in space."""
-    return isinstance(body.shape, SpaceShape) and body.shape.is_compact

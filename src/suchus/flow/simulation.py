@@ -28,18 +28,16 @@ from suchus.flow.linked import Linked
 from suchus.flow.log import FlowLoads, Log, columns, part_columns
 from suchus.flow.markers import Markers, kernel_array, max_speed
 from suchus.flow.memory import Snapshot, restore_snapshot, take_snapshot
-from suchus.flow.midline import CachedMidline, Midline
+from suchus.flow.midline import CachedMidline, Spined
 from suchus.flow.nest import Nested
 from suchus.flow.pose import CachedMotion, Pose, length, speeds
 from suchus.flow.progress import Bar
 from suchus.flow.rake import due_after
 from suchus.flow.record import Record
 from suchus.flow.resolution import estimate_force_error
-from suchus.flow.setup import Setup, has_blunt_shape
-from suchus.flow.shape import Cylinder
-from suchus.flow.solid import Sphere
+from suchus.flow.setup import Setup
+from suchus.flow.solid import Cylinder, Sphere
 from suchus.flow.swimmer import Swimmer
-from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists, accelerate, add_twists, join_twists, resting_twists
 from suchus.flow.watch import SIDE_CHECK_INTERVAL, Watch
 from suchus.flow.water import Fluid
@@ -77,7 +75,7 @@ def _remembering(body: AnyBody, ndim: int) -> AnyBody:
         is_fixed = isinstance(body.motion, Pose)
         motion = CachedMotion(lambda time: checked(time).in_dimensions(ndim))
         body = replace(body, motion=checked(0.0).in_dimensions(ndim) if is_fixed else motion)
-    if not isinstance(body.shape, Midline | Trunk):
+    if not isinstance(body.shape, Spined):
         return body
     shape = copy(body.shape)
     object.__setattr__(shape, "spine", CachedMidline(shape.spine))
@@ -203,7 +201,7 @@ class Simulation(Fields):
                 )  # fmt: skip
                 consistencies.append(Consistency(source, cell))
                 changing.append(not fixed)
-        if isinstance(body.shape, Midline | Trunk):
+        if isinstance(body.shape, Spined):
             midline = MidlineSource(body.name, body.shape.spine)
             consistencies.append(Consistency(midline, cell, check_interval=RATE_CHECK_INTERVAL))
             changing.append(not body.shape.rigid)
@@ -503,7 +501,7 @@ class Simulation(Fields):
         gap = 2.5 * cell if law is None else law.gap
         tangential = [float(np.ptp(line)) for d, line in enumerate(outline.points) if d != wall.axis]
         weight = abs(self.swimmers[body.name].applied[wall.axis]) if law is None else 0.0
-        mass = (body.density or self.setup.density) * body.shape.mass(time).size  # type: ignore[union-attr]
+        mass = (body.density or self.setup.density) * body.shape.mass(time).volume  # type: ignore[union-attr]
         speed = self._fastest_approach(body.name, outline, wall)
         needed = (3.0 * mass * speed**2 / gap + 4 * weight) / prod(tangential)
         if law is not None:
@@ -590,7 +588,7 @@ class Simulation(Fields):
         if not self._starts_at_once:
             return 0.0
         cells = float(np.sqrt(self.setup.viscosity * self.time)) / self.setup.grid.cell
-        return min(estimate_force_error(cells, is_compact=has_blunt_shape(body)), 1.0)
+        return min(estimate_force_error(cells, is_compact=body.shape.is_compact), 1.0)
 
     def last_loads(self, name: str) -> FlowLoads:
         """Return the force of the water on a body and on each of its parts in the last step.
@@ -678,9 +676,8 @@ class Simulation(Fields):
         for body in self._bodies:
             if isinstance(body, Body) and isinstance(body.motion, CachedMotion):
                 body.motion.clear()
-            spine = getattr(body.shape, "spine", None)
-            if isinstance(spine, CachedMidline):
-                spine.clear()
+            if isinstance(body.shape, Spined) and isinstance(body.shape.spine, CachedMidline):
+                body.shape.spine.clear()
 
     def snapshot(self) -> Snapshot:
         """Return a copy of the whole state, for ``restore``."""

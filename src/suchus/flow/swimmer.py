@@ -23,8 +23,8 @@ from suchus.core import rotation
 from suchus.core.errors import Diverged, Doubtful, InvalidDesign
 from suchus.core.kinds import show
 from suchus.flow.free import FreeBody
-from suchus.flow.mass import Mass, SpaceMass
-from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.mass import Mass
+from suchus.flow.pose import ROTATION_PLANES, Pose, cross, rotate_vectors
 
 
 def to_degrees_of_freedom(values: Sequence[float], ndim: int) -> np.ndarray:
@@ -158,12 +158,9 @@ class Swimmer:
     def from_body(cls, body: FreeBody) -> "Swimmer":
         """Return a free body in its initial state."""
         ndim = body.shape.ndim
-        if ndim == 2:
-            place, rate = np.array([*body.start[:2], body.angle]), np.array([*body.velocity[:2], body.spin])
-        else:
-            turn = _attitude(body.angle, body.pitch, body.roll)
-            place = np.array([*_lengthened(body.start, 3), *turn])
-            rate = np.array([*_lengthened(body.velocity, 3), body.spin_x, body.spin_y, body.spin])
+        turns = len(ROTATION_PLANES[ndim])
+        place = np.array([*_lengthened(body.start, ndim), *_attitude(body.angle, body.pitch, body.roll)[-turns:]])
+        rate = np.array([*_lengthened(body.velocity, ndim), *(body.spin_x, body.spin_y, body.spin)[-turns:]])
         free = (True,) * place.size if body.free is None else body.free
         return cls(body, place, rate, to_degrees_of_freedom(free, ndim).astype(bool))
 
@@ -172,60 +169,53 @@ class Swimmer:
         return self.body.shape.ndim
 
     @staticmethod
-    def _angles(place: np.ndarray) -> tuple[float, float, float]:
-        """Return yaw, pitch and roll of a body in space; a body that turns about z alone counts its whole turns."""
-        x, y, z = place[3:].tolist()
-        return rotation.angles(rotation.from_vector(place[3:])) if x or y else (z, 0.0, 0.0)
+    def _angles(turn: np.ndarray) -> tuple[float, float, float]:
+        """Return yaw, pitch and roll of an attitude; a body that turns about z alone counts its whole turns.
+
+        Args:
+            turn: angle in the plane, shape (1,), or rotation vector in space, shape (3,) [rad].
+        """
+        if turn[:-1].any():
+            return rotation.angles(rotation.from_vector(turn))
+        return float(turn[-1]), 0.0, 0.0
 
     def _matrix(self, place: np.ndarray) -> np.ndarray:
         """Return the rotation matrix of the body's frame, shape (3, 3); see ``Pose.matrix``.
 
         Args:
-            place: centre of mass and rotation vector [m, rad].
+            place: centre of mass and attitude [m, rad].
         """
-        if self._ndim == 2:
-            return np.eye(3)  # the plane's mass matrix does not depend on it
-        x, y, z = place[3:].tolist()
-        return rotation.turn(place[3:]) if x or y else Pose(angle=z).matrix
+        turn = place[self._ndim :]
+        return rotation.turn(turn) if turn[:-1].any() else Pose(angle=float(turn[-1])).matrix
 
     def _pose(self, place: np.ndarray, velocity: np.ndarray, spins: np.ndarray) -> Pose:
-        """Return the pose in space whose origin is the centre of mass.
+        """Return the pose whose origin is a place.
 
         Args:
-            place: centre of mass and rotation vector [m, rad].
-            velocity: velocity of the centre of mass [m/s].
-            spins: angular velocity about x, y and z [rad/s].
+            place: position and attitude [m, rad].
+            velocity: velocity of the origin [m/s].
+            spins: angular velocity about z, in space about x, y and z [rad/s].
         """
-        yaw, pitch, roll = self._angles(place)
-        (x, y, z), (u, v, w), (p, q, r) = place[:3].tolist(), velocity.tolist(), spins.tolist()
+        ndim = self._ndim
+        yaw, pitch, roll = self._angles(place[ndim:])
+        spin_x, spin_y, spin = (0.0, 0.0, *spins.tolist())[-3:]
         return Pose(
-            position=(x, y, z), angle=yaw, pitch=pitch, roll=roll, velocity=(u, v, w), spin_x=p, spin_y=q, spin=r
-        )
+            position=tuple(place[:ndim].tolist()), angle=yaw, pitch=pitch, roll=roll, velocity=tuple(velocity.tolist()),
+            spin_x=spin_x, spin_y=spin_y, spin=spin,
+        )  # fmt: skip
 
-    def pose(self, mass: Mass | SpaceMass) -> Pose:
+    def pose(self, mass: Mass) -> Pose:
         """Return the pose of the body's frame, which recoils from the deformation of the body.
 
         Args:
             mass: mass properties of the present shape in the body's frame.
         """
-        if isinstance(mass, SpaceMass):
-            matrix = self._matrix(self.coordinates)
-            spins = np.where(self.is_free[3:], self.rate[3:] - mass.recoil(matrix)[3:], self.rate[3:])
-            offset, drift = (
-                np.array(rotate_vectors(matrix, mass.centre)),
-                np.array(rotate_vectors(matrix, mass.centre_rate)),
-            )
-            place = np.concatenate([self.coordinates[:3] - offset, self.coordinates[3:]])
-            return self._pose(place, self.rate[:3] - drift - np.cross(spins, offset), spins)
-        angle = self.coordinates[2]
-        c, s = np.cos(angle), np.sin(angle)
-        spin = self.rate[2] - mass.swirl / mass.moment if self.is_free[2] else self.rate[2]
-        rx, ry = c * mass.centre[0] - s * mass.centre[1], s * mass.centre[0] + c * mass.centre[1]
-        ux, uy = (c * mass.centre_rate[0] - s * mass.centre_rate[1], s * mass.centre_rate[0] + c * mass.centre_rate[1])
-        return Pose(
-            position=(self.coordinates[0] - rx, self.coordinates[1] - ry), angle=angle,
-            velocity=(self.rate[0] - ux + spin * ry, self.rate[1] - uy - spin * rx), spin=spin,
-        )  # fmt: skip
+        ndim, matrix = self._ndim, self._matrix(self.coordinates)
+        rate, spins = self.rate[:ndim], self.rate[ndim:]
+        spins = np.where(self.is_free[ndim:], spins - mass.recoil(matrix)[ndim:], spins)
+        offset, drift = rotate_vectors(matrix, mass.centre), rotate_vectors(matrix, mass.centre_rate)
+        place = np.concatenate([self.coordinates[:ndim] - np.array(offset), self.coordinates[ndim:]])
+        return self._pose(place, rate - np.array(drift) - np.array(cross(spins, offset)), spins)
 
     @property
     def place_and_rate(self) -> Pose:
@@ -233,10 +223,7 @@ class Swimmer:
         return self._state(self.coordinates)
 
     def _state(self, place: np.ndarray) -> Pose:
-        if self._ndim == 3:
-            return self._pose(place, self.rate[:3], self.rate[3:])
-        (x, y, angle), (u, v, spin) = place.tolist(), self.rate.tolist()
-        return Pose(position=(x, y), angle=angle, velocity=(u, v), spin=spin)
+        return self._pose(place, self.rate[: self._ndim], self.rate[self._ndim :])
 
     def set_added_mass(self, mass: np.ndarray, time: float) -> None:
         """Set the added mass.
@@ -367,7 +354,7 @@ class Swimmer:
         residual_impulse = self._residual_impulse_before(momentum)
         expected_force = self._expected_force(residual_impulse, dt)
         recoil = slip + self._slip(end_mass, matrix)
-        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.size, recoil, force_moment)
+        outer, yielding = self._outer(time, dt, (density - water_density) * start_mass.volume, recoil, force_moment)
         if contact is not None:
             outer = outer + contact
         rate = self.rate
@@ -423,7 +410,7 @@ class Swimmer:
         push[self.is_free] = np.linalg.solve(total_inertia[np.ix_(self.is_free, self.is_free)], force[self.is_free])
         return push
 
-    def _slip(self, mass: Mass | SpaceMass, matrix: np.ndarray) -> np.ndarray:
+    def _slip(self, mass: Mass, matrix: np.ndarray) -> np.ndarray:
         """Return the velocity that the deformation takes from the frame, as far as it is free."""
         slip: np.ndarray = np.where(self.is_free, mass.recoil(matrix), 0.0)
         return slip
@@ -492,15 +479,7 @@ class Swimmer:
             mid_place: place of the body [m, rad].
             stiff: stiffness of each degree of freedom.
         """
-        body = self.body
-        if self._ndim == 2:
-            slack = np.array([*body.start[:2], body.angle] if body.anchor is None else body.anchor)
-            return np.asarray(stiff * (mid_place - slack))
-        if body.anchor is None:
-            slack = np.array([*_lengthened(body.start, 3), *_attitude(body.angle, body.pitch, body.roll)])
-        else:
-            x, y, z, yaw, pitch, roll = self._anchor(body.anchor)
-            slack = np.array([x, y, z, *_attitude(yaw, pitch, roll)])
+        slack = self._slack_place()
         spring_force = stiff * (mid_place - slack)
         if stiff[3:].any():
             turn = rotation.multiply(rotation.from_vector(mid_place[3:]), rotation.from_vector(-slack[3:]))
@@ -508,13 +487,14 @@ class Swimmer:
             spring_force[3:] = -_unwinding(vector, stiff[3:] * vector)
         return np.asarray(spring_force)
 
-    def _anchor(self, anchor: Sequence[float]) -> list[float]:
-        """Return the anchor of the springs as six numbers; of three, the others are those of the start.
-
-        Args:
-            anchor: x, y and yaw, or x, y, z, yaw, pitch and roll [m, rad].
-        """
-        if len(anchor) == 6:
-            return list(anchor)
-        x, y, turn = anchor
-        return [x, y, _lengthened(self.body.start, 3)[2], turn, 0.0, 0.0]
+    def _slack_place(self) -> np.ndarray:
+        """Return the place at which the springs are slack; of an anchor of three, the rest is that of the start."""
+        anchor = self.body.anchor
+        if anchor is None:
+            return Swimmer.from_body(self.body).coordinates
+        if self._ndim == 2:
+            return np.array(anchor)
+        if len(anchor) == 3:
+            x, y, turn = anchor
+            anchor = x, y, _lengthened(self.body.start, 3)[2], turn, 0.0, 0.0
+        return np.array([*anchor[:3], *_attitude(*anchor[3:])])

@@ -1,6 +1,6 @@
+# ruff: noqa: ARG002 - rigid and bending shapes share one interface, rigid ones ignore the time
 """A body in space that is defined by its midline and the elliptic sections along it: fish, robots, fins."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -8,19 +8,20 @@ import numpy as np
 
 from suchus.core.errors import InvalidDesign
 from suchus.flow.markers import Markers
-from suchus.flow.mass import SpaceMass, of_trunk
-from suchus.flow.midline import MidlineState, check_cuts
+from suchus.flow.mass import Mass, of_trunk
+from suchus.flow.midline import MidlineState, Spined
 from suchus.flow.paint import ring
-from suchus.flow.pose import Pose, rotate_vectors
+from suchus.flow.pose import Pose
 from suchus.flow.sections import PAINTED_FIELDS, paint_sections, paint_turned_sections
-from suchus.flow.solid import SpaceField, SpaceShape
+from suchus.flow.shape import Axes, Field
+from suchus.flow.solid import box_around, open_grid
 
 _MIN_POINTS = 12
 """Fewest points around a section [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Trunk(SpaceShape):
+class Trunk(Spined):
     """A body whose midline bends in the plane z = 0; its sections are ellipses, square to the midline.
 
     A fin is a stretch whose half-heights are large and whose half-widths are small.
@@ -30,16 +31,11 @@ class Trunk(SpaceShape):
             the midline's stations, and for cuts that do not rise.
     """
 
-    mirror_symmetry: ClassVar[tuple[bool, bool, bool]] = (False, False, True)
+    ndim: ClassVar[int] = 3
+    mirror_symmetry: ClassVar[tuple[bool, ...]] = (False, False, True)
 
-    spine: Callable[[float], MidlineState]
-    """The midline as a function of the time [s], with the half-widths in its plane."""
     half_height: np.ndarray
     """Half of the height across the plane at each station, shape (station,) [m]."""
-    cuts: tuple[float, ...] = ()
-    """Arc lengths from the first station that divide the body into the parts of ``Record.part_series`` [m]."""
-    deforms: bool = True
-    """Whether the midline changes with time; False saves work."""
 
     def __post_init__(self) -> None:
         """Check the half-heights and the cuts."""
@@ -49,17 +45,7 @@ class Trunk(SpaceShape):
                 f"the half-heights of a trunk have shape {heights.shape} and go from {heights.min():.4g} to "
                 f"{heights.max():.4g} m; give one row of finite numbers, none negative."
             )
-        check_cuts(self.cuts, "trunk")
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the shape never changes."""
-        return not self.deforms
-
-    @property
-    def parts(self) -> int:
-        """Parts that the cuts leave [-]."""
-        return len(self.cuts) + 1
+        Spined.__post_init__(self)
 
     def midline_and_frame(self, time: float, pose: Pose) -> tuple[MidlineState, Pose]:
         """Return the midline at a time in the plane z = 0 of a frame, and the pose of that frame in the world.
@@ -93,9 +79,9 @@ class Trunk(SpaceShape):
             )
         return spine
 
-    def measure(self, x: np.ndarray, y: np.ndarray, z: np.ndarray, time: float, pose: Pose, reach: float) -> SpaceField:
-        """Return distance, normal, velocity and part on the points of a window; see ``SpaceShape``."""
-        spine, frame = self.midline_and_frame(time, pose)
+    def measure(self, points: Axes, time: float, pose: Pose, reach: float) -> Field:
+        """Return distance, normal, velocity and part on the points of a window; see ``Shape``."""
+        (x, y, z), (spine, frame) = points, self.midline_and_frame(time, pose)
         h = float(x[-1] - x[0]) / (x.size - 1)
         fields = np.zeros((PAINTED_FIELDS, z.size, y.size, x.size))
         fields[0], fields[6] = reach, np.inf
@@ -106,15 +92,13 @@ class Trunk(SpaceShape):
             paint_sections(*arguments, float(x[0]), float(y[0]), float(z[0]) - frame.position[2], h, float(reach))
             lift = np.full(fields[0].shape, frame.velocity[2])
             normal, velocity = (fields[1], fields[2], fields[3]), (fields[4], fields[5], lift)
-            return SpaceField(fields[0], normal, velocity, fields[6], part_index)
+            return Field(fields[0], normal, velocity, fields[6], part_index)
         matrix = np.ascontiguousarray(frame.matrix)
         px, py, pz = (np.ascontiguousarray(line, float) for line in (x, y, z))
         paint_turned_sections(*arguments, px, py, pz, matrix, np.array(frame.position), float(reach))
-        rigid = frame.velocity_at((x, y[:, None], z[:, None, None]))
-        u, v, w = (
-            a + b for a, b in zip(rigid, rotate_vectors(matrix, (fields[4], fields[5], 0 * fields[5])), strict=True)
-        )
-        return SpaceField(fields[0], rotate_vectors(matrix, fields[1:4]), (u, v, w), fields[6], part_index)
+        rigid, bending = frame.velocity_at(open_grid(points)), frame.rotate((fields[4], fields[5], 0 * fields[5]))
+        velocity = tuple(a + b for a, b in zip(rigid, bending, strict=True))
+        return Field(fields[0], frame.rotate(fields[1:4]), velocity, fields[6], part_index)
 
     def markers(self, time: float, pose: Pose, spacing: float) -> Markers:
         """Return markers at the centres of patches between the stations.
@@ -172,22 +156,19 @@ class Trunk(SpaceShape):
         """Return the smallest box around the body: x0, x1, y0, y1, z0, z1 [m]."""
         spine, frame = self.midline_and_frame(time, pose)
         if pose.in_plane:
-            outline, height = ring(spine.rows), frame.position[2]
-            ends = [end for line in outline for end in (float(line.min()), float(line.max()))]
-            half_height = float(self.half_height.max())
-            return (*ends, height - half_height, height + half_height)
-        centres, matrix = np.array(frame.to_world_3d((spine.x, spine.y, 0 * spine.x))), frame.matrix
+            height, half_height = frame.position[2], float(self.half_height.max())
+            return (*box_around(ring(spine.rows)), height - half_height, height + half_height)
+        centres, matrix = np.array(frame.to_world((spine.x, spine.y, 0 * spine.x))), frame.matrix
         lateral = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         lateral_extent = spine.half_width * (matrix[:, :2] @ lateral)
         vertical_extent = np.outer(matrix[:, 2], self.half_height)
         extent = np.hypot(lateral_extent, vertical_extent)  # how far each section reaches along the world's axes
-        lower_bounds, upper_bounds = (centres - extent).min(axis=1).tolist(), (centres + extent).max(axis=1).tolist()
-        return tuple(end for pair in zip(lower_bounds, upper_bounds, strict=True) for end in pair)
+        return box_around(np.concatenate([centres - extent, centres + extent], axis=1))
 
     def midsurface(self, time: float, pose: Pose) -> np.ndarray | None:
         """Return the longer axes of the sections, where a section is narrower than it is far from the ends of the body.
 
-        Round sections have no such surface. See ``SpaceShape``.
+        Round sections have no such surface. See ``Shape``.
         """
         spine, frame = self.midline_and_frame(time, pose)
         half_width, half_height, arc = spine.half_width, self.half_height, spine.arc
@@ -200,7 +181,7 @@ class Trunk(SpaceShape):
         has_surface = ((vertical[1:] > 0) & (vertical[:-1] > 0)) | ((lateral[1:] > 0) & (lateral[:-1] > 0))
         if not has_surface.any():
             return None
-        lower_rim, upper_rim = (np.array(frame.to_world_3d(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
+        lower_rim, upper_rim = (np.array(frame.to_world(centre_line + sign * rim_offset)) for sign in (-1.0, 1.0))
         pairs = [
             (lower_rim[:, :-1], lower_rim[:, 1:], upper_rim[:, :-1]),
             (lower_rim[:, 1:], upper_rim[:, 1:], upper_rim[:, :-1]),
@@ -212,25 +193,19 @@ class Trunk(SpaceShape):
         spine = self._spine(time)
         return spine.arc, 2 * np.minimum(spine.half_width, self.half_height)
 
-    def volume(self, time: float) -> float:
-        """Return the volume."""
-        return self.mass(time).volume
+    def is_closed(self, time: float) -> bool:
+        """Return False: water passes through the middle where the sections are nearly round."""
+        return False
 
-    def mass(self, time: float) -> SpaceMass:
+    def mass(self, time: float) -> Mass:
         """Return volume, centre and moments, section by section."""
         return of_trunk(self._spine(time).rows, self.half_height)
 
     def position_at(self, time: float, pose: Pose, arc: np.ndarray) -> np.ndarray:
-        """Return points of the midline in the world frame, shape (point, 3) [m].
-
-        Args:
-            time: time [s].
-            pose: pose of the body's frame.
-            arc: arc lengths of the points [m].
-        """
+        """Return where the midline is at arc lengths, in the world, shape (point, 3) [m]; see ``Spined``."""
         spine, frame = self.midline_and_frame(time, pose)
         x, y = (np.interp(arc, spine.arc, line) for line in (spine.x, spine.y))
-        return np.column_stack(frame.to_world_3d((x, y, 0 * x)))
+        return np.column_stack(frame.to_world((x, y, 0 * x)))
 
 
 def in_world(skin: Markers, frame: Pose) -> Markers:
@@ -240,12 +215,12 @@ def in_world(skin: Markers, frame: Pose) -> Markers:
         skin: markers in a frame.
         frame: pose of that frame.
     """
-    points = np.array(frame.to_world_3d(skin.points))
-    velocities = np.array(rotate_vectors(frame.matrix, skin.velocities)) + frame.velocity_at(points)
+    points = np.array(frame.to_world(skin.points))
+    velocities = np.array(frame.rotate(skin.velocities)) + frame.velocity_at(points)
     return Markers(
         points=points, weight=skin.weight, velocities=velocities,
-        normals=np.array(rotate_vectors(frame.matrix, skin.normals)),
-        spins=np.array(rotate_vectors(frame.matrix, skin.spins)) + frame.spins[:, None], part_index=skin.part_index,
+        normals=np.array(frame.rotate(skin.normals)),
+        spins=np.array(frame.rotate(skin.spins)) + frame.spins[:, None], part_index=skin.part_index,
     )  # fmt: skip
 
 

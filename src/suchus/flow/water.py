@@ -17,7 +17,7 @@ from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, reaches_beyond
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import close_faces, close_surface, fill, fill_source, immerse
+from suchus.flow.immerse import CLOSE, fill, fill_source, immerse
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.momentum import (
     add_contents,
@@ -34,7 +34,6 @@ from suchus.flow.scheme import QUICK, Scheme
 from suchus.flow.shape import Shape
 from suchus.flow.sides import Sides
 from suchus.flow.slab import inner_strides
-from suchus.flow.solid import SpaceShape
 
 MAX_PRESSURE_CYCLES = 60
 """Most iterations of the pressure solver [-]."""
@@ -234,7 +233,7 @@ class Fluid:
             [axis_points(*axis_ends, d) for d, axis_ends in enumerate(ends)]
             for axis_points in (self.grid.centres, self.grid.faces)
         )
-        self._points = [[(faces if c == d else centres)[d] for d in range(self.ndim)] for c in range(self.ndim)]
+        self._points = [tuple((faces if c == d else centres)[d] for d in range(self.ndim)) for c in range(self.ndim)]
         self._first_centre = [float(points[0]) for points in centres]
         self._beyond = [k for k, is_beyond in enumerate(reaches_beyond(window, self.grid)) if is_beyond]
         self._low_sides = [
@@ -346,7 +345,7 @@ class Fluid:
         self.rows = rows_of(bodies)
         self.immersion_sums = np.zeros((sum(map(len, self.rows)), sums_of(self.ndim)))
         self.internal_pressure_sums = np.zeros((len(self.immersion_sums), 1 + self.ndim))
-        self._jointed = any(getattr(body.shape, "jointed", False) for body in bodies)
+        self._jointed = any(body.shape.jointed for body in bodies)
         if not filled_windows:
             return
         has_moved = new != self._level_window
@@ -410,7 +409,7 @@ class Fluid:
         source, b, mu0 = (self._flat(a) for a in (self.source, self.b, self.mu0))
         fill_source(source, b, mu0, self._layout[0], self._near_layout, self.inner)
 
-    def _close(self, shape: Shape | SpaceShape, pose: Pose, time: float, first_centre: list[float]) -> None:
+    def _close(self, shape: Shape, pose: Pose, time: float, first_centre: list[float]) -> None:
         """Set the pressure to act on no face through the middle of a thin body.
 
         Args:
@@ -419,18 +418,11 @@ class Fluid:
             time: time [s].
             first_centre: centre of the first cell of the window, x first [m].
         """
-        h, slices = self.grid.cell, self._window_slices(self.window)
-        if isinstance(shape, SpaceShape):
-            triangles = shape.midsurface(time, pose)
-            if triangles is not None:
-                for c in range(3):
-                    close_surface(self.passage[c][slices], c, triangles, np.array(first_centre), h)
-            return
-        centreline = shape.centreline(time, pose)
-        if centreline is not None:
-            x, y = first_centre
-            close_faces(self.passage[0][slices], centreline[0], centreline[1], x - h, y, h)
-            close_faces(self.passage[1][slices].T, centreline[1], centreline[0], y - h, x, h)
+        surface = shape.midsurface(time, pose)
+        if surface is not None:
+            slices = self._window_slices(self.window)
+            for c in range(self.ndim):
+                CLOSE[self.ndim](self.passage[c][slices], c, surface, np.array(first_centre), self.grid.cell)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""

@@ -441,7 +441,7 @@ class Swim:
             stretched = [girdle.aside + girdle.limb.reach + girdle.limb.foot.radius for girdle in robot.girdles]
             reach = max(swing, *stretched, 1.5 * self._strokes[1] + float(self.half_height.max()))
             grid = setting.grid_around(robot.length, reach)
-            shape: flow.SpaceShape | flow.Midline = self.chain.body(self.path)
+            shape: flow.Shape = self.chain.body(self.path)
             motion = self.chain.motion(self.path)
         else:
             height = float(self.half_height.max())

@@ -73,7 +73,7 @@ class FieldWindow:
 def midline(sim: flow.Simulation) -> flow.MidlineState:
     """Return the midline of the only body, in the frame of the grid."""
     body, (position, _) = sim.setup.bodies[0], sim.frame
-    world_state = body.shape.spine(sim.time).in_world(sim.pose(body.name))  # type: ignore[union-attr]
+    world_state = body.shape.spine(sim.time).in_world(sim.pose(body.name))  # type: ignore[attr-defined]
     return flow.MidlineState(
         x=world_state.x - position[0],
         y=world_state.y - position[1],

@@ -40,7 +40,7 @@ class TetheredSlice:
         if phase <= SLACK and not turn:
             return
         surface = sim.surface()
-        midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[union-attr]
+        midline = sim.setup.bodies[0].shape.spine(sim.time)  # type: ignore[attr-defined]
         sides = tail_sides(self._outline, surface)
         readings = {
             "difference": convex_less_concave(self._outline, surface, midline),
@@ -175,7 +175,7 @@ class FreeSlice:
                 "heading": ("sample", snout[:, 1], {"units": "rad"}),
                 "tail_y": ("sample", lateral[:, -1], {"units": "m"}),
                 "swing": ("station", swing(lateral).amplitude, {"units": "m"}),
-                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N/m"}),
+                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).volume, {"units": "N/m"}),
                 "wave_speed": ((), wave_speed(outline, motion, cycle(outline, motion)), {"units": "m/s"}),
                 "thin": ((), sim.thin_fractions[sim.setup.bodies[0].name], {"units": "1"}),
             }

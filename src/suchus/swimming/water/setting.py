@@ -181,7 +181,7 @@ class SwimSetting:
             sides=flow.Sides(low=flow.Wall()),
         )
 
-    def check_thickness(self, robot: Robot, shape: flow.Shape | flow.SpaceShape) -> None:
+    def check_thickness(self, robot: Robot, shape: flow.Shape) -> None:
         """Refuse cells in space so coarse that a robot is nowhere thick enough for them.
 
         Raises:

@@ -71,7 +71,7 @@ class FreeInSpace:
                 "moment": ("moment", last_cycle.time, {"units": "s"}),
                 "joint_torque": (("moment", "joint"), torques, {"units": "N m"}),
                 "servo_torque": (("moment", "servo"), outline.servo_torques(torques), {"units": "N m"}),
-                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).size, {"units": "N"}),
+                "weight": ((), DENSITY * GRAVITY * sim.setup.bodies[0].shape.mass(sim.time).volume, {"units": "N"}),
             }
         )
 
@@ -151,7 +151,7 @@ class TetheredInSpace:
             force: force on each part, shape (axis, part) [N].
         """
         outline = self._swim.outline
-        spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[union-attr]
+        spine = sim.setup.bodies[0].shape.spine(time)  # type: ignore[attr-defined]
         normals = np.stack([-np.sin(spine.heading), np.cos(spine.heading)])
         edges = np.array([0.0, *np.sort(outline.joint_positions), outline.robot.length])
         push = 0.0
