@@ -183,7 +183,7 @@ def test_a_robot_that_sinks_is_told_by_how_much_and_one_that_floats_is_not():
         check_floats(floating, Lake(level=1.0, air_fraction=0.0))
     check_floats(caiman, Lake(level=1.0, water=Water(density=2000.0)))
     leaden = with_values(floating, {"hull.density": 1000.0})
-    with pytest.raises(InvalidDesign, match=r"displaces; lighter foam, as design.flotation.float_hull makes"):
+    with pytest.raises(InvalidDesign, match=r"displaces; lighter foam, as design\.flotation.float_hull makes"):
         check_floats(leaden, Lake(level=1.0))
 
 

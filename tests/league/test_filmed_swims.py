@@ -1,6 +1,7 @@
 """A swim is the filmed one in trim, or there is no word; the page says what to trust before it counts misses."""
 
 import json
+import re
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +15,8 @@ from evidence.league.cases import CONTESTANTS
 from evidence.league.cases._films import FilmedEnvelope
 from evidence.league.causes import UNKNOWN, cause_of
 from evidence.league.contestant import Interval
-from evidence.league.page import _is_narrow, all_standings, page
+from evidence.league.judging import Judgement
+from evidence.league.page import LeagueEntry, _gap, _is_narrow, all_standings, page
 from evidence.league.sealing import sealed_prediction
 from evidence.league.swims import MAX_HEEL, MAX_PITCH, MAX_SWING_ERROR, SwimPrediction, free_swims, held_swim
 from suchus.core.errors import InvalidDesign, NotConverged, OutsideLimits
@@ -133,6 +135,51 @@ def test_every_miss_on_the_page_has_a_cause():
     assert missed
     assert [pair for pair in sorted(missed) if cause_of(*pair) == UNKNOWN] == []
     assert cause_of("stone", "formula") == UNKNOWN
+
+
+def test_the_number_behind_a_miss_is_that_of_its_cause():
+    text = league_page.text(league_page.kept())
+    part = text.partition("## Misses and their causes")[2].partition("\n## ")[0]
+    table, _, list_of_causes = part.partition("The causes, as far as they are known:")
+    causes = [" ".join(item.split()) for item in re.split(r"\n\d+\. ", list_of_causes)[1:]]
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("| ")]
+    assert len(rows) - 1 == table.count(" | ") // 6 - 1 > len(causes) == len(set(causes))
+    for contestant, _, model, *_, number in rows[1:]:
+        assert causes[int(number) - 1] == f"{cause_of(contestant, model)}."
+
+
+def row_of(word, low, high, model="sections"):
+    entry = LeagueEntry(
+        name="body", title="", explanation="", words={"speed": "speed"}, units={"speed": "m/s"}, prediction={},
+        seal=None, measured={},
+    )  # fmt: skip
+    return entry, "speed", model, Interval(low, low, high), None, Judgement(word, 1.0)
+
+
+def test_the_page_says_what_keeps_the_recommended_model_from_the_aim():
+    met, other = (
+        [row_of("within", 1.0, 1.8)] * 5 + [row_of("within", 1.0, 1.95)] * 2,
+        row_of("within", 1.0, 1.0, "reactive"),
+    )
+    assert _gap([*met, row_of("missed", 1.0, 1.5), *[row_of("within", 1.0, 2.1)] * 2, other]) == []
+    text = "\n".join(_gap([*met[1:], row_of("missed", 1.0, 1.5), *[row_of("within", 1.0, 2.1)] * 3, other]))
+    assert "6 of the 10 judged predictions by sections are within and narrow, and 70% would be 7." in text
+    assert "The interval of 2 of them is wider than a factor of 1.9. The others:" in text
+    assert text.count("* body, speed: within, its interval a factor of 2.1 wide.") == 3
+    assert text.count("* body, speed: missed by a factor of 1, its interval a factor of 1.5 wide.") == 1
+    assert _gap([row_of("not a steady swim", 1.0, 1.5)]) == []
+
+
+def test_the_swing_of_the_lampreys_is_that_of_the_table_and_picture_of_their_films():
+    """Twice the mode's amplitude at the tail's tip, over the length; the mean is less than the root mean square."""
+    for viscosity, (mean, deviation, tip) in {1.0: (1745, 586, 0.3525), 20.0: (1341, 316, 0.3555)}.items():
+        one = find(CONTESTANTS, f"lamprey_{viscosity:g}")
+        tail, length = one.inputs["tail"], 1e3 * one.inputs["length"].value
+        root = 2.0 * tip * mean**0.5 / length
+        assert 0.98 * root < tail.value < root
+        between = deviation / mean / 5**0.5
+        assert between < 1.0 - tail.low / tail.value < between + 0.02
+        assert tail.high - tail.value == pytest.approx(tail.value - tail.low)
 
 
 def test_a_page_keeps_what_is_not_predicted_anew(tmp_path, monkeypatch):

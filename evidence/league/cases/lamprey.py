@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from functools import partial
+from math import hypot, sqrt
 
 from evidence.league import Contestant, ContestantFamily, Found, Given, Numbers, Quantity
 from evidence.league.cases._films import FilmedSwim, LongBody, filmed_swing
+from evidence.league.cases._water import Estimate
 from evidence.league.judging import unsteady_wave
 from evidence.league.swims import ModelSwimmer, SwimPrediction, SwimTask, rungs
 from suchus.core.errors import InvalidDesign
@@ -12,6 +14,12 @@ from suchus.core.errors import InvalidDesign
 _DATA = (
     "public midlines of 5 freely swimming young sea lampreys (Petromyzon marinus), github.com/tytell/Viscosity, table "
     "Data/coddata.csv, first mode: mean over the animals and two standard errors [read]"
+)
+_SIZES = (
+    "mean and standard deviation over the swims of the first complex orthogonal value, in the picture of cell 21 of "
+    "Lamprey_COD-Part_II_Initial_COD.ipynb of the same repository, by its share at the tail's tip in the table; range "
+    "as if all swims of an animal were alike, two standard errors of five animals, with 2 % for the reading and 5 % "
+    "for what is not the first mode, as independent errors [computed here]"
 )
 _FILM = (
     "public midlines of one such lamprey, github.com/tytell/fishmechr, lampreydata (CC BY 4.0): amplitudes about its "
@@ -37,6 +45,26 @@ SWIM = FilmedSwim(body=BODY, positions=POSITIONS, shape=SHAPE)
 VISCOSITIES = {1.0: (2.88, 0.764, 0.143), 10.0: (2.82, 0.723, 0.148), 20.0: (2.18, 0.684, 0.150)}
 """Frequency [Hz], wavelength [body length] and length [m] that were filmed, by viscosity over that of water."""
 _ERRORS = {1.0: (0.30, 0.021, 0.0033), 10.0: (0.51, 0.040, 0.0074), 20.0: (0.31, 0.053, 0.0064)}
+_VALUES = {1.0: (1745.0, 586.0, 0.3525), 10.0: (1716.0, 586.0, 0.3620), 20.0: (1341.0, 316.0, 0.3555)}
+"""First complex orthogonal value, the sum over 20 points of the mean square of the amplitude: mean and standard
+deviation over the swims [mm2]; and amplitude of its mode of length 1 at the tail's tip, mean over the swims [-]."""
+_ANIMALS, _READING, _OTHER_MODES = 5, 0.02, 0.05
+
+
+def _tail(viscosity: float) -> Estimate:
+    """Return the way of the tail from side to side of the mean swim, with its range [body length].
+
+    The value at the tip is the mean square of the amplitude there; the mean of the amplitude is less by its spread.
+
+    Args:
+        viscosity: over that of water [-].
+    """
+    mean, deviation, tip = _VALUES[viscosity]
+    spread = 0.5 * deviation / mean  # of the amplitude, relative
+    length = VISCOSITIES[viscosity][2]
+    way = 2.0 * tip * 1e-3 * sqrt(mean * (1.0 - spread**2)) / length
+    error = hypot(2.0 * spread / sqrt(_ANIMALS), _READING, _OTHER_MODES)
+    return Estimate(way, (1.0 - error) * way, (1.0 + error) * way)
 
 
 def build(numbers: Numbers, frequency: float | None) -> ModelSwimmer:
@@ -68,7 +96,7 @@ def in_viscosity(viscosity: float) -> Contestant:
         )
     frequency, wavelength, length = VISCOSITIES[viscosity]
     errors = _ERRORS[viscosity]
-    tail, spread = 0.186, 0.25 if viscosity == 1.0 else 0.35
+    tail = _tail(viscosity)
     given = {
         name: Given(value=value, low=value - error, high=value + error, unit=unit, source=f"{_DATA}{what}")
         for name, value, error, unit, what in (
@@ -78,9 +106,9 @@ def in_viscosity(viscosity: float) -> Contestant:
         )
     }
     given["tail"] = Given(
-        value=tail, low=(1.0 - spread) * tail, high=(1.0 + spread) * tail, unit="body length",
-        source=f"way of the tail from side to side and shape of the envelope: {_FILM}; of one animal in water, so that "
-        f"{spread:.0%} are allowed for others" + ("" if viscosity == 1.0 else " and for the thicker water"),
+        value=tail.value, low=tail.low, high=tail.high, unit="body length",
+        source=f"way of the tail from side to side, of the same animals in the same water: {_SIZES}; shape of the "
+        f"envelope: {_FILM}",
     )  # fmt: skip
     given["wide"] = Given(value=0.8, low=0.6, high=1.0, unit="-", source=f"factor on the drawn width: {_DRAWING}")
     given["high"] = Given(value=1.0, low=0.85, high=1.15, unit="-", source=f"factor on the drawn height: {_DRAWING}")
@@ -95,7 +123,8 @@ def in_viscosity(viscosity: float) -> Contestant:
         name=f"lamprey_{viscosity:g}",
         title=f"A lamprey in water {viscosity:g} times as viscous",
         description="Young sea lampreys (Petromyzon marinus) of some 0.15 m that swim freely in a tank, in water whose "
-        "viscosity was raised. Frequency and wavelength are the means of all swims, the envelope that of one film.",
+        "viscosity was raised. Frequency, wavelength and swing of the tail are means of all swims, the shape of the "
+        "envelope that of one film.",
         inputs=given | water | thick,
         predicts={
             "stride": Quantity(unit="body length", words="stride, the way in a beat"),
