@@ -36,7 +36,7 @@ from suchus.flow.shape import Field, Shape
 from suchus.flow.sides import Inflow, Mirror, Outflow, Periodic, Side, Sides, Slip, Stream, Wall
 from suchus.flow.signals import frequency, morison, noise, strouhal
 from suchus.flow.simulation import Simulation
-from suchus.flow.solid import Cylinder, Ellipse, Ellipsoid, PlaneSolid, Plate, Skin, Solid, Sphere
+from suchus.flow.solid import Cylinder, Ellipse, Ellipsoid, PlaneSolid, Plate, Solid, Sphere, SurfacePoints
 from suchus.flow.trunk import Trunk
 from suchus.flow.twist import Twists
 from suchus.flow.vortices import lambda2, second_invariant, velocity_gradient
@@ -94,7 +94,6 @@ __all__ = [
     "Side",
     "Sides",
     "Simulation",
-    "Skin",
     "Slip",
     "Solid",
     "Sphere",
@@ -102,6 +101,7 @@ __all__ = [
     "Stage",
     "Stream",
     "Surface",
+    "SurfacePoints",
     "TriangleMesh",
     "Trunk",
     "Twists",

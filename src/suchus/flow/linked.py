@@ -16,7 +16,7 @@ from suchus.flow.markers import Markers
 from suchus.flow.mass import Mass, tensor
 from suchus.flow.pose import Pose
 from suchus.flow.shape import Axes, Field, Shape, box_slices, check_positive, write_nearer
-from suchus.flow.solid import MIN_INSIDE_DEPTH, Ellipsoid, Skin, Solid, box_around, is_blunt
+from suchus.flow.solid import MIN_INSIDE_DEPTH, Ellipsoid, Solid, SurfacePoints, box_around, is_blunt
 
 _MIN_POINTS_ACROSS = 16
 """Points across a piece, at least, over which its volume is summed [-]."""
@@ -57,10 +57,10 @@ class Spherocylinder(Solid):
         safe = np.maximum(size, 1e-12 * self.radius)
         return size - self.radius, dx / safe, y / safe, z / safe
 
-    def skin(self, spacing: float) -> Skin:
+    def skin(self, spacing: float) -> SurfacePoints:
         """Return points on rings along it and over its round ends."""
         points, normals, areas = around_rod(self.length, self.radius, spacing)
-        return Skin(points - np.array([[0.5 * self.length], [0.0], [0.0]]), normals, areas)
+        return SurfacePoints(points - np.array([[0.5 * self.length], [0.0], [0.0]]), normals, areas)
 
     def extents(self) -> tuple[float, ...]:
         """Return the box around it in its own frame."""

@@ -39,7 +39,7 @@ _BOX_POINTS = 512
 """Points of the outline within which the rectangle around a plane solid is taken [-]."""
 
 
-class Skin(NamedTuple):
+class SurfacePoints(NamedTuple):
     """Points over the surface of a solid in its own frame."""
 
     points: np.ndarray
@@ -68,7 +68,7 @@ class Solid(Shape):
         """
 
     @abstractmethod
-    def skin(self, spacing: float) -> Skin:
+    def skin(self, spacing: float) -> SurfacePoints:
         """Return points over the surface in the body's frame, about ``spacing`` [m] apart."""
 
     @abstractmethod
@@ -121,9 +121,9 @@ class PlaneSolid(Solid):
     def outline(self, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Return ``count`` points around the outline, counter-clockwise, about evenly spaced [m]."""
 
-    def skin(self, spacing: float) -> Skin:
+    def skin(self, spacing: float) -> SurfacePoints:
         """Return the middles of the outline's edges; see ``Solid``."""
-        return Skin(*_edges(self, float(spacing))[:3])
+        return SurfacePoints(*_edges(self, float(spacing))[:3])
 
     def extents(self) -> tuple[float, ...]:
         """Return the rectangle around the outline; see ``Solid``."""
@@ -420,7 +420,7 @@ class Ellipsoid(Solid):
         )  # fmt: skip
         return Field(fields[0], tuple(fields[1:4]), tuple(fields[4:7]), fields[7])
 
-    def skin(self, spacing: float) -> Skin:
+    def skin(self, spacing: float) -> SurfacePoints:
         """Return points on rings about the body's z axis; each represents the same area of a unit sphere."""
         rings = max(_MIN_RINGS, int(np.ceil(np.pi * float(self.half_extents.max()) / spacing)))
         cos = (np.arange(rings) + 0.5) * 2 / rings - 1
@@ -430,7 +430,9 @@ class Ellipsoid(Solid):
         unit = unit.reshape(3, -1)
         a = self.half_extents[:, None]
         size = np.sqrt(((unit / a) ** 2).sum(axis=0))
-        return Skin(a * unit, unit / a / size, float(np.prod(self.half_extents)) * size * (4 * np.pi / unit.shape[1]))
+        return SurfacePoints(
+            a * unit, unit / a / size, float(np.prod(self.half_extents)) * size * (4 * np.pi / unit.shape[1])
+        )
 
     def bounds(self, time: float, pose: Pose) -> tuple[float, ...]:
         """Return the box around the ellipsoid."""
