@@ -262,7 +262,7 @@ def use_command(folder, capsys):
 def use_shape(folder, capsys):
     """Its area is exact, and the flow goes round it."""
     square = importlib.import_module("square").SQUARE
-    assert square.mass(0.0).area == pytest.approx(1.0, rel=1e-6)
+    assert square.volume(0.0) == pytest.approx(1.0, rel=1e-6)
     grid = flow.Grid.covering((-2.0, 2.0), (-2.0, 2.0), cell=1 / 8)
     body = flow.Body(shape=square, motion=flow.Pose(position=(0.0, 0.0), angle=0.0))
     setup = flow.Setup(grid=grid, viscosity=1 / 20, stream=(1.0, 0.0), bodies=(body,))

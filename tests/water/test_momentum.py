@@ -20,7 +20,7 @@ def _books(robot):
     sim.control(0.2 * robot.length)
     record = sim.run(1.0, progress=False)
     step, late = record.step[:, None], record.time > 0.45
-    has = 1000.0 * shape.mass(1.0).area * np.column_stack([record.column(f"velocity_{axis}") for axis in "xy"])
+    has = 1000.0 * shape.volume(1.0) * np.column_stack([record.column(f"velocity_{axis}") for axis in "xy"])
     given, lost = np.cumsum(record.force() * step, axis=0), np.nancumsum(sim.control_forces * step, axis=0)
     return has[late], given[late], lost[late]
 
