@@ -206,6 +206,19 @@ def test_a_fade_does_not_jump_with_the_cells_that_a_body_covers():
     assert changes.max() < 0.1 * (ends[0] - ends[1])
 
 
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.03, -0.02)])
+def test_a_wake_is_faded_over_the_same_way_at_any_size_of_the_cells(place):
+    """A patch of fine cells and fine cells everywhere differed by it in the lift of a cylinder."""
+    lengths = []
+    for cells in (12, 24):
+        body = flow.Body(shape=flow.Cylinder(diameter=1.0), motion=flow.Pose(position=place))
+        grid = flow.Grid.covering((-5, 11), (-4, 4), cell=1 / cells)
+        sim = flow.Simulation(flow.Setup(grid=grid, viscosity=0.1, stream=(1.0, 0.0), bodies=(body,), coarse=True))
+        sim.advance(0.001)
+        lengths.append(max(edge.fade_length for edge in sim.water.border.edges) / cells)
+    assert lengths[0] == pytest.approx(lengths[1], rel=0.02)
+
+
 def test_a_fade_that_shortens_goes_on_from_a_snapshot_to_the_same_bytes():
     body = flow.Body(shape=flow.eel(1.0, stations=65))
     grid = flow.Grid.covering((-0.5, 2.0), (-0.6, 0.6), cell=1 / 32)

@@ -208,14 +208,14 @@ class Facets(ABC):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Edges(Facets):
+class OutlineEdges(Facets):
     """The edges of an outline in the plane."""
 
     shape: PlaneSolid
     still_corners: np.ndarray
 
     @classmethod
-    def of_outline(cls, shape: PlaneSolid) -> "Edges":
+    def of_outline(cls, shape: PlaneSolid) -> "OutlineEdges":
         """Return the edges of a shape's outline, at least ``CORNERS``."""
         return cls(shape, np.stack([np.array(line, float) for line in shape.outline(CORNERS)]))
 
@@ -256,14 +256,14 @@ class Edges(Facets):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Triangles(Facets):
+class MeshTriangles(Facets):
     """The triangles of a closed mesh in space."""
 
     shape: TriangleMesh
     still_corners: np.ndarray
 
     @classmethod
-    def of_mesh(cls, mesh: TriangleMesh) -> "Triangles":
+    def of_mesh(cls, mesh: TriangleMesh) -> "MeshTriangles":
         """Return the triangles of a mesh."""
         return cls(mesh, mesh.vertices.T)
 
@@ -396,9 +396,9 @@ def bend_shape(shape: PlaneSolid | TriangleMesh, back: Back, *, tick: float = DE
         raise InvalidDesign(f"tick is {tick} s; a positive time is needed, short for what the map does.")
     given: object = shape
     if isinstance(given, PlaneSolid):
-        facets: Facets = Edges.of_outline(given)
+        facets: Facets = OutlineEdges.of_outline(given)
     elif isinstance(given, TriangleMesh):
-        facets = Triangles.of_mesh(given)
+        facets = MeshTriangles.of_mesh(given)
     else:
         raise InvalidDesign(
             f"a {type(given).__name__} cannot be bent by a map; give a PlaneSolid, such as from_outline or an Ellipse, "

@@ -50,14 +50,15 @@ FADE_FRACTION = 0.85
 """Part of the distance from the bodies to a side over which the wake is faded before it leaves there [-].
 
 It has to be much longer than the wavelength of a street: with a quarter of the domain, the lift of a cylinder at
-Re 100 is 0.25, 0.35 and 0.29 with 12, 16 and 20 diameters behind it, on 8 cells a diameter; with this one 0.31."""
+Re 100 is 0.25, 0.35 and 0.29 with 12, 16 and 20 diameters behind it, on 8 cells a diameter; with
+this one it is 0.34."""
 
 MIN_UNFADED_WIDTHS = 1.8
 """Length of the wake behind the bodies that is not faded, over their width [-].
 
 In a box that ends 4.5 diameters behind a started cylinder at Re 40, the largest difference of its drag from the
 solution in polar coordinates is 1.5 % with 1.1 widths and 0.3 % with 1.8. With 5 the fade is too short for the street
-in a box that ends 11.5 diameters behind the cylinder: its lift is 3.5 % larger than in a wide one."""
+in a box that ends 11.5 diameters behind the cylinder: its lift is 6 % larger than in a longer one."""
 
 PANELS = 16
 """Panels along the side of a cube with as many cells as the domain and its images; the surface lies as far inside the

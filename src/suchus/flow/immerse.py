@@ -203,8 +203,8 @@ def close_surface(passage, c, triangles, origin, h):
                     )
 
 
-CLOSE = {2: close_faces, 3: close_surface}
-"""What closes the faces through the middle of a thin body, in the plane and in space."""
+CLOSING_KERNELS = {2: close_faces, 3: close_surface}
+"""Kernels that close the faces through the middle of a thin body, by the number of axes."""
 
 
 @ordered_part

@@ -17,7 +17,7 @@ from suchus.flow.body import AnyBody, Overlap, cuts, measure_all, reaches_beyond
 from suchus.flow.border import Border
 from suchus.flow.compiled import PAD, Window
 from suchus.flow.grid import Grid
-from suchus.flow.immerse import CLOSE, fill, fill_source, immerse
+from suchus.flow.immerse import CLOSING_KERNELS, fill, fill_source, immerse
 from suchus.flow.integrator import HEUN, Integrator
 from suchus.flow.momentum import (
     add_contents,
@@ -422,7 +422,7 @@ class Fluid:
         if surface is not None:
             slices = self._window_slices(self.window)
             for c in range(self.ndim):
-                CLOSE[self.ndim](self.passage[c][slices], c, surface, np.array(first_centre), self.grid.cell)
+                CLOSING_KERNELS[self.ndim](self.passage[c][slices], c, surface, np.array(first_centre), self.grid.cell)
 
     def fastest(self) -> float:
         """Return the largest sum of the sizes of the components in a cell [m/s]."""
