@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from math import isfinite
 
 import numpy as np
@@ -17,9 +18,11 @@ from suchus.flow.shape import Axes, Field, Shape, check_positive
 from suchus.flow.solid import box_around, pieces_of_line
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class MidlineState:
     """A midline at one time, in the body's own frame; arrays of shape (station,), from one end to the other.
+
+    What follows from the arrays is computed once, so they are to be read only.
 
     Raises:
         InvalidDesign: on creation, for arrays that do not fit each other or are not finite.
@@ -76,7 +79,7 @@ class MidlineState:
             if values is not None and not np.isfinite(values).all():
                 raise InvalidDesign(f"{name} of the midline is not finite at station {np.argmin(np.isfinite(values))}.")
 
-    @property
+    @cached_property
     def rows(self) -> np.ndarray:
         """The stations for the kernels, shape (7, station)."""
         rows = [self.x, self.y, self.heading, self.half_width, self.x_rate, self.y_rate, self.heading_rate]
@@ -87,7 +90,12 @@ class MidlineState:
         """Rate of the half-width, zero if it is constant [m/s]."""
         return np.zeros(self.x.size) if self.half_width_rate is None else self.half_width_rate.astype(np.float64)
 
-    @property
+    @cached_property
+    def mass(self) -> Mass:
+        """Area, centre and moments of the body in the plane, section by section."""
+        return of_midline(self.rows)
+
+    @cached_property
     def arc(self) -> np.ndarray:
         """Arc length from the first station, shape (station,) [m]."""
         return np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(self.x), np.diff(self.y)))])
@@ -314,8 +322,7 @@ class Midline(Spined):
 
     def mass(self, time: float) -> Mass:
         """Return area, centre and moments, section by section."""
-        spine = self.spine(time)
-        return of_midline(spine.rows)
+        return self.spine(time).mass
 
     def thickness(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length and thickness at the stations."""

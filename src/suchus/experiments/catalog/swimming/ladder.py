@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import lru_cache, partial
 from hashlib import sha256
 from importlib import resources
 from math import isfinite, nan, pi
@@ -575,19 +575,10 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
         cycles: number of cycles of the swim [-].
     """
     names = ("wave_share", "wave_waves_per_body", "wave_envelope_middle", "wave_envelope_tip")
-    s = np.linspace(0.0, 1.0, course.shape[1])
 
-    @cache
     def wave(a: int, b: int) -> tuple[float, ...]:
-        """Return wave fraction [-], waves per body [-], and amplitudes at the middle and the tip [body length]."""
-        excerpt = course[a * TICKS : b * TICKS + 1]
-        side = (
-            1.0 if excerpt[0, -1] >= excerpt[:-1, -1].mean() else -1.0
-        )  # so that a mirrored swim gives the same bytes
-        swing_fit = swing(side * excerpt, b - a)
-        linear, quadratic, waves, share = wave_form(s, swing_fit.amplitude, swing_fit.phase_lag)
-        sine = float(np.average(swing_fit.variance_fraction, weights=swing_fit.amplitude**2))
-        return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
+        excerpt = np.ascontiguousarray(course[a * TICKS : b * TICKS + 1])
+        return _wave(excerpt.tobytes(), course.shape[1], b - a)
 
     def tip(a: int, b: int) -> list[float]:
         cycle_courses = [course[i * TICKS : (i + 1) * TICKS + 1, -1:] for i in range(a, b)]
@@ -603,6 +594,28 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
 
     for i, (name, scale) in enumerate(zip(names, (1.0, 1.0, size, size), strict=True)):
         yield name, settle(partial(wave_component, i), cycles, scale) if is_moving else no_number
+
+
+@lru_cache(maxsize=1024)  # a ladder of six rungs asks for some 60 waves, again for each rung, its table and its measures
+def _wave(course: bytes, places: int, cycles: int) -> tuple[float, float, float, float]:
+    """Return the wave of the form (20) that fits a part of a midline's course best.
+
+    Args:
+        course: bytes of the lateral positions, shape (tick, place) [body length].
+        places: number of places along the body [-].
+        cycles: number of cycles [-].
+
+    Returns:
+        Share of the swing that is the wave [-], waves per body [-], amplitudes at the middle and the tip [body length].
+    """
+    excerpt = np.frombuffer(course).reshape(-1, places)
+    side = 1.0 if excerpt[0, -1] >= excerpt[:-1, -1].mean() else -1.0  # so that a mirrored swim gives the same bytes
+    swing_fit = swing(side * excerpt, cycles)
+    linear, quadratic, waves, share = wave_form(
+        np.linspace(0.0, 1.0, places), swing_fit.amplitude, swing_fit.phase_lag
+    )
+    sine = float(np.average(swing_fit.variance_fraction, weights=swing_fit.amplitude**2))
+    return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
 
 
 def _pressing(difference: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumber]]:
