@@ -488,7 +488,8 @@ class Face:
                 components[d] = face_planes[1]
                 continue
             n = 1 + self.tangential_axes.index(d)  # of cells from their two faces
-            face_planes = 0.5 * (np.delete(face_planes, 0, axis=n) + np.delete(face_planes, -1, axis=n))
+            last_faces, first_faces = np.moveaxis(face_planes, n, 0)[1:], np.moveaxis(face_planes, n, 0)[:-1]
+            face_planes = np.moveaxis(0.5 * (last_faces + first_faces), 0, n)
             components[d], rises[d] = 0.5 * (face_planes[0] + face_planes[1]), face_planes[1] - face_planes[0]
         if leaving:
             components[self.axis] = components[self.axis] - leaving * self._flux(components[self.axis], rises)

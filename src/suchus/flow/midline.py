@@ -118,7 +118,7 @@ class MidlineState:
         x, y = pose.to_world((self.x, self.y))
         vx, vy = pose.rotate((self.x_rate, self.y_rate))
         cx, cy = pose.velocity_at((x, y))
-        return replace(
+        return _with(
             self, x=x, y=y, heading=self.heading + pose.angle, x_rate=vx + cx, y_rate=vy + cy,
             heading_rate=self.heading_rate + pose.spin,
         )  # fmt: skip
@@ -160,13 +160,18 @@ def check_state(state: object, time: float) -> MidlineState:
     return state
 
 
-def _copy_of(state: MidlineState) -> MidlineState:
-    """Return a copy of a state, with arrays of its own; it is not checked again."""
+def _with(state: MidlineState, **arrays: np.ndarray) -> MidlineState:
+    """Return a state with other arrays; it is not checked again, which takes longer than to make it."""
     result = object.__new__(type(state))  # copy.copy takes four times as long
     for name in _STATE_NAMES:
-        values = getattr(state, name)
-        object.__setattr__(result, name, None if values is None else values.copy())
+        object.__setattr__(result, name, arrays.get(name, getattr(state, name)))
     return result
+
+
+def _copy_of(state: MidlineState) -> MidlineState:
+    """Return a copy of a state, with arrays of its own."""
+    named = {name: getattr(state, name) for name in _STATE_NAMES}
+    return _with(state, **{name: values.copy() for name, values in named.items() if values is not None})
 
 
 class CachedMidline:

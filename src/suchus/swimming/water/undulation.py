@@ -91,15 +91,13 @@ class Undulation:
             evaluate(self.sway[:, None]),
         )
         step = self.outline.robot.length / (self.outline.stations - 1)
-        zero = np.zeros_like(y[..., 0])
-        return MidlineCurve(
-            cumulative_positions(zero, step * np.cos(middle)),
-            cumulative_positions(y[..., 0], step * np.sin(middle)),
-            heading,
-            cumulative_positions(zero, -step * np.sin(middle) * spin),
-            cumulative_positions(y_rate[..., 0], step * np.cos(middle) * spin),
-            rate,
+        snout = np.zeros((4, *y.shape[:-1]))
+        snout[1], snout[3] = y[..., 0], y_rate[..., 0]
+        forward, aside = step * np.cos(middle), step * np.sin(middle)
+        x_positions, y_positions, x_velocities, y_velocities = cumulative_positions(
+            snout, np.array([forward, aside, -aside * spin, forward * spin])
         )
+        return MidlineCurve(x_positions, y_positions, heading, x_velocities, y_velocities, rate)
 
     def _phases(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         rates = 2j * np.pi * self.frequency * np.arange(len(self.sway))
