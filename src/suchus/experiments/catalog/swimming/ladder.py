@@ -596,7 +596,7 @@ def _waving(course: np.ndarray, cycles: int) -> Iterator[tuple[str, SettledNumbe
         yield name, settle(partial(wave_component, i), cycles, scale) if is_moving else no_number
 
 
-@lru_cache(maxsize=1024)  # a ladder of six rungs asks for some 60 waves, again for each rung, its table and its measures
+@lru_cache(maxsize=1024)  # a ladder asks for some 60 waves, again for each rung, its table and its measures
 def _wave(course: bytes, places: int, cycles: int) -> tuple[float, float, float, float]:
     """Return the wave of the form (20) that fits a part of a midline's course best.
 
@@ -611,9 +611,7 @@ def _wave(course: bytes, places: int, cycles: int) -> tuple[float, float, float,
     excerpt = np.frombuffer(course).reshape(-1, places)
     side = 1.0 if excerpt[0, -1] >= excerpt[:-1, -1].mean() else -1.0  # so that a mirrored swim gives the same bytes
     swing_fit = swing(side * excerpt, cycles)
-    linear, quadratic, waves, share = wave_form(
-        np.linspace(0.0, 1.0, places), swing_fit.amplitude, swing_fit.phase_lag
-    )
+    linear, quadratic, waves, share = wave_form(np.linspace(0.0, 1.0, places), swing_fit.amplitude, swing_fit.phase_lag)
     sine = float(np.average(swing_fit.variance_fraction, weights=swing_fit.amplitude**2))
     return sine * share, waves, abs(0.5 * linear + 0.25 * quadratic), abs(linear + quadratic)
 
