@@ -75,6 +75,25 @@ def test_starts_with_and_without_sharing_end_at_the_first_look_that_decides(gain
     assert ends == pytest.approx([low, high])
 
 
+@pytest.mark.parametrize(
+    ("gains", "count"),
+    [
+        (np.linspace(0.05, 0.2, 32), 8),
+        (np.array([0.2, -0.1] + 30 * [0.2]), 16),  # of eight the interval holds the least, of sixteen no more
+        (np.array([0.2, -0.2] * 16), 32),
+    ],
+)
+def test_for_verdicts_starts_end_after_a_quarter_if_that_decides(gains, count, monkeypatch):
+    monkeypatch.setattr(Feedback, "_further_starts", starts(gains))
+    question = EXPERIMENTS["feedback"].for_verdicts()
+    record = sampled(question)
+    assert (question.sharing_starts, record.sizes["start"]) == (32, count)
+    found = sharing_measures(record, question.gait, question.hold)
+    low, high = median_interval(gains[:count], confidence=1.0 - 0.05 / 3)
+    ends = [found[f"way_gain_shared{end}"].value for end in ("_low", "_high")]
+    assert ends == pytest.approx([low, high])
+
+
 def test_without_an_early_end_all_starts_are_sampled_and_their_interval_is_that_of_one_look(monkeypatch):
     gains = np.linspace(0.05, 0.2, 16)
     monkeypatch.setattr(Feedback, "_further_starts", starts(gains))

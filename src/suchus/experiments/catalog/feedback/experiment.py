@@ -93,10 +93,10 @@ _DISTURBED_MEASURES = {
 """Measures of the claims for which the disturbances of the claims suffice."""
 REPORTED_ARMS = ("open", "closed", "steered")
 """Controls whose measures are reported."""
-_SINGLE_RULES: Mapping[str, tuple[str, ...]] = {
-    "none": ("limbs", "spine", "tail"), "locked_spine": ("spine",), "uphill": ("tail",),
+_TOLD_ARMS: Mapping[str, tuple[str, ...]] = {
+    "none": ("limbs", "spine", "tail"), "locked_spine": ("spine",), "uphill": ("tail",), "limp_yaw": ("steered",),
 }  # fmt: skip
-"""Disturbances of whose walks with one rule alone something is measured, and that rule."""
+"""Disturbances of which more is told than of walks without a rule and with all three, and the controls of that."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,9 +138,9 @@ class Feedback(Experiment):
     """Number of random initial limb phases of each law that is only compared [-]: the first of the judged laws'."""
     sharing_starts: int = 32
     """Greatest number of random initial limb phases with and without sharing [-]. After half of them sampling ends if
-    the claim has a word by then."""
+    the claim has a word by then, and for the verdicts after a quarter of them."""
     early_end: bool = True
-    """Whether sampling with and without sharing ends after half of the starts if the claim has a word by then."""
+    """Whether sampling with and without sharing ends before the last start if the claim has a word by then."""
     judged_cycles: int = 7
     """Simulated duration of each start whose converged fraction is judged [cycle]. The slowest of 72 starts converges
     after 3.5 cycles, and the wrong sign has as long."""
@@ -163,8 +163,9 @@ class Feedback(Experiment):
     """Names of the disturbances that are simulated; the measures of others are not known."""
     extent: Literal["whole", "verdicts"] = "whole"
     """How much is simulated: the whole, or what the verdicts and their reasons need. Then the law that feels the
-    trunk's torque is left out, so are single rules under disturbances in which nothing is measured of them, and a start
-    ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law goes on."""
+    trunk's torque is left out, so are single rules and the heading loop under disturbances in which nothing is told of
+    them, and a start ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law
+    goes on. Sampling with and without sharing has three looks in the place of two."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
@@ -198,7 +199,8 @@ class Feedback(Experiment):
         """Return the same question with fewer starts of the laws that are only compared, and fewer disturbances.
 
         A judged start has six cycles: the slowest converges after 3.5 and holds for two. It ends once it is known
-        whether it converges.
+        whether it converges. Those with and without sharing keep their twelve: after eight the gain by sharing still
+        grows.
         """
         return replace(
             self,
@@ -300,7 +302,7 @@ class Feedback(Experiment):
     def _looks(self) -> tuple[int, ...]:
         """Numbers of starts with and without sharing after which sampling may end [-]."""
         count = min(self.sharing_starts, self.starts)
-        return planned_looks(count) if self.early_end else (count,)
+        return planned_looks(count, 2 if self.extent == "whole" else 3) if self.early_end else (count,)
 
     def _records(
         self, progress: Progress, laws: Collection[str], disturbances: Sequence[str] = ()
@@ -521,7 +523,7 @@ class Feedback(Experiment):
 
     def _has_cell(self, name: str, arm: str) -> bool:
         """Return whether a control walks under a disturbance."""
-        return self.extent == "whole" or arm in (*REPORTED_ARMS, *_SINGLE_RULES.get(name, ()))
+        return self.extent == "whole" or arm in ("open", "closed", *_TOLD_ARMS.get(name, ()))
 
     def _disturbed_run(self, control: Coordinated, name: str) -> Run:
         """Return the run of a control under a disturbance.
