@@ -19,7 +19,7 @@ from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.limbs import LimbMotion, Steer, bounded, check_limbs, girdles, quarter
+from suchus.robot.motion.limbs import LimbMotion, Steer, bounded, check_limbs, limb_groups, quarter
 from suchus.robot.motion.parts import AxisRegion, FootPath
 
 START = CRAWL_START
@@ -77,7 +77,7 @@ class Movement:
             (servo, self.layout.cable(servo), [k for k, hinge_servo in enumerate(servos) if hinge_servo == servo])
             for servo in cables
         ]
-        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.layout)]
+        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in limb_groups(self.layout, gaits[0])]
         self._curves = [_Measured(self.layout, gaits, i) for i in range(len(gaits[0].curves))]
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
 
@@ -158,8 +158,8 @@ class Movement:
         reach_error = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.layout.limbs))))
         for group in self._limbs:
             if group.has_paths:
-                min_reach, max_reach = limb_kinematics.reach(group.limb.girdle.limb)
                 for i, distance in zip(group.limb_indices, np.linalg.norm(group.feet(limbs), axis=0), strict=True):
+                    min_reach, max_reach = limb_kinematics.reach(self.layout.limbs[i].girdle.limb)
                     reach_error[..., i] = np.maximum(np.maximum(min_reach - distance, distance - max_reach), 0.0)
         return reach_error
 
@@ -175,9 +175,9 @@ class Movement:
         places: dict[int, np.ndarray] = {}
         for group in self._limbs:
             forward, outward, down = group.feet(limbs)
-            places |= zip(
-                group.limb_indices, np.stack([group.limb.girdle.aside + outward, forward, down], axis=-1), strict=True
-            )
+            for k, i in enumerate(group.limb_indices):
+                aside = self.layout.limbs[i].girdle.aside + outward[k]
+                places[i] = np.stack([aside, forward[k], down[k]], axis=-1)
         return np.stack([places[i] for i in range(len(places))], axis=-2)
 
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
