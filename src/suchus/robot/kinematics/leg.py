@@ -119,7 +119,9 @@ class Lengths(NamedTuple):
 
     def part(self, points: slice) -> "Lengths":
         """Return the lengths of a part of the points."""
-        return Lengths(*(numbers[points] if isinstance(numbers, np.ndarray) else numbers for numbers in self))
+        if not isinstance(self.femur, np.ndarray) or points.stop - points.start >= len(self.femur):
+            return self
+        return Lengths(*(np.asarray(numbers)[points] for numbers in self))
 
 
 def solve(

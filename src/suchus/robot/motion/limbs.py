@@ -40,6 +40,11 @@ class Steer(NamedTuple):
     tail: Float[np.ndarray, "*batch"] | float = 0.0
     """Steady lateral bend of the tail besides that of the gait, left positive [rad]."""
 
+    @property
+    def keeps_paths(self) -> bool:
+        """Whether the feet keep the paths of the gait."""
+        return is_number(self.size, 1.0) and is_number(self.stroke, 1.0) and is_number(self.lowering, 0.0)
+
 
 class LimbMotion:
     """Limbs of one girdle, or legs of several, in gaits of one structure: every number is an array over runs.
@@ -91,6 +96,7 @@ class LimbMotion:
                     _MAX_STANCE_ANGLE,
                 )
             return list(self._crank_angle(phase, stance, parameters.down)[..., None])
+        draw = draw and not (parameters.lies_within_reach and (steer is None or steer.keeps_paths))
         try:
             return list(self._angles_at(parameters, *self._feet(parameters, phase, steer), draw=draw))
         except Unreachable as error:
@@ -130,11 +136,11 @@ class LimbMotion:
         forward, lifted = foot_path(phase, self._duty)
         stroke, lift, outward, ahead, down = (_over_batch(numbers, phase.ndim) for numbers in parameters.metres)
         if steer is not None:
-            if not _is(steer.size, 1.0):
+            if not is_number(steer.size, 1.0):
                 stroke = stroke * np.asarray(steer.size)
-            if not _is(steer.stroke, 1.0):
+            if not is_number(steer.stroke, 1.0):
                 stroke = stroke * self._of_limbs(steer.stroke)
-            if not _is(steer.lowering, 0.0):
+            if not is_number(steer.lowering, 0.0):
                 down = down + self._of_limbs(steer.lowering)
         return ahead + stroke * forward, outward, down - lift * lifted
 
@@ -218,6 +224,19 @@ def foot_path(phase: Float[np.ndarray, "*batch"], duty: Any) -> tuple[np.ndarray
 def bounded(values: Any, lower_bound: Any, upper_bound: Any) -> np.ndarray:
     """Return numbers within bounds, as ``numpy.clip`` does, in a third of its time for the few numbers of one run."""
     return np.asarray(np.minimum(np.maximum(values, lower_bound), upper_bound))
+
+
+def in_steps(indices: Sequence[int]) -> Any:
+    """Return a slice with which an array gives the values at some indices, where these are evenly spaced, else them.
+
+    A slice takes a third of the time for the few numbers of one run.
+    """
+    places = [int(i) for i in indices]
+    step = places[1] - places[0] if len(places) > 1 else 1
+    if not places or step == 0 or places != list(range(places[0], places[-1] + (1 if step > 0 else -1), step)):
+        return np.array(places, dtype=int)
+    stop = places[-1] + (1 if step > 0 else -1)
+    return slice(places[0], None if stop < 0 else stop, step)
 
 
 def limb_groups(place: Layout, gait: Gait) -> list[list[int]]:
@@ -312,6 +331,8 @@ class _Path(NamedTuple):
     """Swivel over runs, of limbs of one girdle [rad]."""
     legs: "_Legs | None"
     """The legs, if they are such."""
+    lies_within_reach: bool
+    """Whether it is known that a leg reaches every place of its foot's path, so that none needs to be drawn into it."""
 
 
 class _Legs:
@@ -330,6 +351,25 @@ class _Legs:
         least, most = np.array([leg.reach for leg in legs]).T
         self._reach = (least + _REACH_MARGIN)[:, None, None], (most - _REACH_MARGIN)[:, None, None]
         self._count, self._lengths = 1, Lengths.of(legs)
+
+    def reach_all_of(
+        self, stroke: np.ndarray, lift: np.ndarray, outward: np.ndarray, ahead: np.ndarray, down: np.ndarray
+    ) -> bool:
+        """Return whether the legs reach all of the boxes in which the paths of their feet lie.
+
+        Args:
+            stroke: half of the length of each box, shape (limb, run) [m].
+            lift: height of each box [m].
+            outward: distance of the boxes from the hips outward [m].
+            ahead: distance of their middles forward [m].
+            down: distance of their undersides below the hips [m].
+        """
+        length, height = np.abs(stroke), np.abs(lift)
+        farthest = np.sqrt(outward**2 + (np.abs(ahead) + length) ** 2 + (np.abs(down) + height) ** 2)
+        level, below = np.maximum(np.abs(ahead) - length, 0.0), np.maximum(np.abs(down) - height, 0.0)
+        nearest = np.sqrt(outward**2 + level**2 + below**2)
+        least, most = (bound[..., 0] for bound in self._reach)
+        return bool(((least + _REACH_MARGIN < nearest) & (farthest < most - _REACH_MARGIN)).all())
 
     def angles(self, foot: Float[np.ndarray, "limb *batch 3"], *, draw: bool) -> np.ndarray:
         """Return yaw, pitch and knee that bring feet to their places, shape (limb, *batch, 3) [rad].
@@ -402,16 +442,15 @@ def _numbers(robot: Robot, gaits: Sequence[Gait], numbers: Sequence[int]) -> "_P
         )
         down = heights + carrier.above - carrier.limb.foot.radius
         metres.append([stroke, lift, outward, ahead, down])
-    return _Path(
-        tuple(np.array(rows) for rows in zip(*metres, strict=True)),
-        np.array([limb.swivel for limb in limbs]),
-        _Legs([limb_kinematics.plain(robot.girdles[number]) for number in numbers], quarter(limbs[0].swivel))
-        if is_leg
-        else None,
-    )
+    legs = None
+    if is_leg:
+        legs = _Legs([limb_kinematics.plain(robot.girdles[number]) for number in numbers], quarter(limbs[0].swivel))
+    arrays = tuple(np.array(rows) for rows in zip(*metres, strict=True))
+    swivel = np.array([limb.swivel for limb in limbs])
+    return _Path(arrays, swivel, legs, legs is not None and legs.reach_all_of(*arrays))
 
 
-def _is(field: np.ndarray | float, number: float) -> bool:
+def is_number(field: np.ndarray | float, number: float) -> bool:
     """Return whether a field of a ``Steer`` is one number, which changes nothing."""
     return isinstance(field, float) and field == number
 
