@@ -212,7 +212,7 @@ class Coordinator:
     def _posture(self) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; those of the table for runs without phase lead and steering."""
         table = self._planned.targets
-        is_adjusted = self._limbs.phase_lead.any(axis=1)
+        is_adjusted: np.ndarray = np.logical_or.reduce(self._limbs.phase_lead, axis=1)
         if self._heading is not None:
             is_adjusted |= self._steering.is_active()
         if not is_adjusted.any():
