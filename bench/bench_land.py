@@ -1,5 +1,7 @@
 """Steps per second of batches and of environments beside MuJoCo's own rollout: same model, states, commands, threads.
 
+And those of one run under feedback beside one in open loop.
+
 Every run has a noise of its own on its servos: equal runs would be simulated once (``land.loop.Deduplication``).
 Environments take actions that were kept before, so that no policy is in their time; observations and rewards are.
 The time is that of the processors, all threads together, so that other work on the machine counts little.
@@ -17,6 +19,8 @@ from mujoco import rollout
 from form import in_form
 from suchus.apps.envs import GaitFollower
 from suchus.core import threads
+from suchus.robot.control import Coordinated
+from suchus.robot.design.scale import coarse_step
 from suchus.robot.gaits import GAITS
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, simulate
@@ -92,6 +96,26 @@ def batches() -> None:
         )
 
 
+def feedback() -> None:
+    """Time one run under feedback and one in open loop, with the coarse time step and ten samples a second."""
+    robot, gait = ROBOTS["caiman"], GAITS["belly_crawl"]
+    timestep, duration = coarse_step(robot), in_form(20.0, 2.0)
+    runs = {"open loop": Run(robot=robot, gait=gait), "feedback": Run(robot=robot, gait=gait, control=Coordinated())}
+    pairs = np.array(
+        [
+            [
+                timed(lambda run=run: simulate([run], duration=duration, timestep=timestep, sample_stride=10))
+                for run in runs.values()
+            ]
+            for _ in range(1 + REPEATS)
+        ]
+    )[1:]  # the first compiles the models
+    rates = duration / timestep / np.median(pairs, axis=0)
+    texts = [f"{name} {rate:8.0f} steps/s" for name, rate in zip(runs, rates, strict=True)]
+    ratio = np.median(pairs[:, 0] / pairs[:, 1])
+    print(f"one run of {duration} s at {timestep} s: {', '.join(texts)}, ratio {ratio:.2f}")
+
+
 def environments(count: int, actions: int, *, fast: bool) -> None:
     """Time so many environments over so many actions.
 
@@ -148,6 +172,7 @@ def main() -> None:
     )
     print(f"processor time, median of {REPEATS} pairs")
     batches()
+    feedback()
     for fast, (count, actions) in product((False, True), ACTIONS.items()):
         environments(count, actions, fast=fast)
 

@@ -1,5 +1,7 @@
 """Confidence intervals against published values, and how often they contain the truth on synthetic data."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -88,45 +90,49 @@ def test_sampling_may_end_after_half_of_the_repeats():
     assert look_confidence(2) == pytest.approx(0.975)
 
 
-def sequential_coverage(fractions, bound, count, confidence):
+def test_sampling_may_end_after_a_quarter_of_the_repeats_too():
+    assert [planned_looks(count, 3) for count in (1, 2, 4, 9, 32)] == [(1,), (1, 2), (1, 2, 4), (3, 5, 9), (8, 16, 32)]
+    assert planned_looks(32, 1) == (32,)
+    assert planned_looks(32, 3)[0] >= min_median_count(look_confidence(3)) == 7
+
+
+def sequential_coverage(fractions, bound, looks, confidence):
     """Return how often the interval at which sampling ends contains each fraction, summed over all outcomes.
 
-    Sampling ends as soon as the interval of a look lies to one side of the bound.
+    Sampling ends as soon as the interval of a look lies to one side of the bound, and after the last look.
     """
-    first, last = planned_looks(count)
-    early_ends, late_ends = (
-        np.array([fraction_interval(n, trials, confidence=confidence) for n in range(trials + 1)])
-        for trials in (first, last)
-    )
-    early, late = np.arange(first + 1), np.arange(last - first + 1)
-    early_chance = stats.binom.pmf(early[:, None], first, fractions)
-    late_chance = stats.binom.pmf(late[:, None], last - first, fractions)
-    early_holds, late_holds = (
-        (ends[:, :1] <= fractions) & (fractions <= ends[:, 1:]) for ends in (early_ends, late_ends)
-    )
-    goes_on = (early_ends[:, 0] <= bound) & (bound <= early_ends[:, 1])
-    coverage = (early_chance * early_holds)[~goes_on].sum(axis=0)
-    for successes in early[goes_on]:
-        coverage += early_chance[successes] * (late_chance * late_holds[successes + late]).sum(axis=0)
+    chance, coverage = np.ones((1, len(fractions))), np.zeros(len(fractions))  # chance: of each number of successes
+    for first, end in pairwise((0, *looks)):
+        added = stats.binom.pmf(np.arange(end - first + 1)[:, None], end - first, fractions)
+        reached = np.zeros((end + 1, len(fractions)))
+        for successes, share in enumerate(chance):
+            reached[successes : successes + len(added)] += share * added
+        lower, upper = np.array([fraction_interval(n, end, confidence=confidence) for n in range(end + 1)]).T[..., None]
+        goes_on = (lower <= bound) & (bound <= upper) & (end < looks[-1])
+        coverage += np.where(goes_on, 0.0, reached * ((lower <= fractions) & (fractions <= upper))).sum(axis=0)
+        chance = np.where(goes_on, reached, 0.0)
     return coverage
 
 
+@pytest.mark.parametrize("number", [2, 3])
 @pytest.mark.parametrize("count", [16, 32])
-def test_intervals_contain_every_fraction_wherever_sampling_ends(count):
-    fractions, bounds = np.linspace(0.01, 0.99, 197), np.linspace(0.05, 0.95, 19)
-    held = [sequential_coverage(fractions, bound, count, look_confidence(2)) for bound in bounds]
+def test_intervals_contain_every_fraction_wherever_sampling_ends(count, number):
+    fractions, bounds, looks = np.linspace(0.01, 0.99, 197), np.linspace(0.05, 0.95, 19), planned_looks(count, number)
+    assert len(looks) == number
+    held = [sequential_coverage(fractions, bound, looks, look_confidence(number)) for bound in bounds]
     assert np.min(held) >= CONFIDENCE
-    once = [sequential_coverage(fractions, bound, count, CONFIDENCE) for bound in bounds]
+    once = [sequential_coverage(fractions, bound, looks, CONFIDENCE) for bound in bounds]
     assert np.min(once) < CONFIDENCE  # why each look needs more confidence than one interval alone
 
 
+@pytest.mark.parametrize("number", [2, 3])
 @pytest.mark.parametrize("draw", ["lognormal", "standard_cauchy"])
 @pytest.mark.parametrize("distance", [0.0, 0.3])
-def test_intervals_contain_the_median_wherever_sampling_ends(draw, distance):
+def test_intervals_contain_the_median_wherever_sampling_ends(draw, distance, number):
     """Sampling ends as soon as the interval of a look lies to one side of a bound near the median."""
     rng = np.random.default_rng(11)
     true_median = {"lognormal": 1.0, "standard_cauchy": 0.0}[draw]
-    bound, looks, count = true_median + distance, planned_looks(24), 4000
+    bound, looks, count = true_median + distance, planned_looks(32 if number == 3 else 24, number), 4000
     contains = np.zeros(count, dtype=bool)
     for number, sample in enumerate(getattr(rng, draw)(size=(count, looks[-1]))):
         for look in looks:

@@ -12,7 +12,7 @@ from suchus.experiments.catalog.feedback.experiment import Feedback, sharing_mea
 from suchus.experiments.catalog.feedback.rules import EXAMPLES as FEEDBACK_EXAMPLES
 from suchus.experiments.catalog.terrain.experiment import Terrain, _rough_grounds, _rough_measures
 from suchus.experiments.catalog.terrain.rules import EXAMPLES as TERRAIN_EXAMPLES
-from suchus.experiments.experiment import Measure
+from suchus.experiments.experiment import Measure, silent
 from suchus.robot.motion import START
 
 OPEN_TERRAIN = 3
@@ -35,18 +35,24 @@ def test_a_claim_has_a_word_unless_a_reading_of_it_is_undecided():
 
 
 def starts(gains):
-    """Return a stand-in for ``Feedback._simulate_starts`` whose gain by sharing is given for each start [m]."""
+    """Return a stand-in for ``Feedback._further_starts`` whose gain by sharing is given for each start [m]."""
 
-    def simulate(question, laws, numbers, cycles, progress):
+    def simulate(question, laws, numbers, progress):
         del progress
-        time = START + np.arange(0.0, cycles + 0.25, 0.5) * question.gait.period
+        time = START + np.arange(0.0, question.cycles + 0.25, 0.5) * question.gait.period
         alone = np.where(np.array(numbers) == 0, -1.0, 0.3)  # the worst start of both is the first
         speeds = np.array([alone + np.array(gains)[list(numbers)], alone])
         way = speeds[..., None] * (time - START) / question.gait.period
         coords = {"law": list(laws), "start": list(numbers), "start_time": time}
-        return xr.Dataset({"start_way": (("law", "start", "start_time"), way)}, coords=coords), None
+        return xr.Dataset({"start_way": (("law", "start", "start_time"), way)}, coords=coords)
 
     return simulate
+
+
+def sampled(question):
+    """Return the starts with and without sharing that a question samples."""
+    first_starts = question._further_starts(["closed_noisy", "isolated_noisy"], range(question._looks[0]), silent)
+    return question._sharing_record(first_starts, silent)
 
 
 @pytest.mark.parametrize(
@@ -59,9 +65,9 @@ def starts(gains):
     ],
 )
 def test_starts_with_and_without_sharing_end_at_the_first_look_that_decides(gains, count, monkeypatch):
-    monkeypatch.setattr(Feedback, "_simulate_starts", starts(gains))
+    monkeypatch.setattr(Feedback, "_further_starts", starts(gains))
     question = replace(EXPERIMENTS["feedback"], sharing_starts=16)
-    record = question._sharing_record(["closed_noisy", "isolated_noisy"], lambda stage, fraction: None)
+    record = sampled(question)
     assert record.sizes["start"] == count
     found = sharing_measures(record, question.gait, question.hold)
     low, high = median_interval(gains[:count], confidence=0.975)
@@ -69,11 +75,30 @@ def test_starts_with_and_without_sharing_end_at_the_first_look_that_decides(gain
     assert ends == pytest.approx([low, high])
 
 
+@pytest.mark.parametrize(
+    ("gains", "count"),
+    [
+        (np.linspace(0.05, 0.2, 32), 8),
+        (np.array([0.2, -0.1] + 30 * [0.2]), 16),  # of eight the interval holds the least, of sixteen no more
+        (np.array([0.2, -0.2] * 16), 32),
+    ],
+)
+def test_for_verdicts_starts_end_after_a_quarter_if_that_decides(gains, count, monkeypatch):
+    monkeypatch.setattr(Feedback, "_further_starts", starts(gains))
+    question = EXPERIMENTS["feedback"].for_verdicts()
+    record = sampled(question)
+    assert (question.sharing_starts, record.sizes["start"]) == (32, count)
+    found = sharing_measures(record, question.gait, question.hold)
+    low, high = median_interval(gains[:count], confidence=1.0 - 0.05 / 3)
+    ends = [found[f"way_gain_shared{end}"].value for end in ("_low", "_high")]
+    assert ends == pytest.approx([low, high])
+
+
 def test_without_an_early_end_all_starts_are_sampled_and_their_interval_is_that_of_one_look(monkeypatch):
     gains = np.linspace(0.05, 0.2, 16)
-    monkeypatch.setattr(Feedback, "_simulate_starts", starts(gains))
+    monkeypatch.setattr(Feedback, "_further_starts", starts(gains))
     question = replace(EXPERIMENTS["feedback"], sharing_starts=16, early_end=False)
-    record = question._sharing_record(["closed_noisy", "isolated_noisy"], lambda stage, fraction: None)
+    record = sampled(question)
     assert record.sizes["start"] == 16
     found = sharing_measures(record, question.gait, question.hold)
     ends = [found[f"way_gain_shared{end}"].value for end in ("_low", "_high")]

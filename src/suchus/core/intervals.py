@@ -12,15 +12,17 @@ CONFIDENCE = 0.95
 """Least probability with which an interval contains the true value [-]."""
 
 
-def planned_looks(count: int) -> tuple[int, ...]:
+def planned_looks(count: int, looks: int = 2) -> tuple[int, ...]:
     """Return the numbers of repeats after which sequential sampling may end: half of them, and all.
 
-    After each look the intervals of ``look_confidence`` say whether the answer is known. One repeat has one look.
+    Each further look comes before these, after half as many repeats. After each look the intervals of
+    ``look_confidence`` say whether the answer is known. Few repeats have fewer looks, one repeat has one.
 
     Args:
         count: greatest number of repeats, at least 1 [-].
+        looks: greatest number of looks, at least 1 [-].
     """
-    return (count,) if count < 2 else (count - count // 2, count)
+    return tuple(sorted({-(-count // 2**halvings) for halvings in range(looks)}))
 
 
 def look_confidence(looks: int) -> float:

@@ -20,6 +20,7 @@ from suchus.robot.design import Robot, layout
 from suchus.robot.motion import START, Batch, Gait, Steer
 
 _SLACK = 1e-9  # [s]; times are multiples of the control period up to rounding
+_STRAIGHT = Steer()  # nothing is steered; feet are drawn into what limbs reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +143,7 @@ class Coordinator:
         steers = any(control.heading is not None for control in controls)
         self._heading = Heading([control.heading for control in controls], robots, gaits, period) if steers else None
         self._shared = initial_shared(len(robots), limbs)
+        self._all_hear = bool(self._hears.all())
         self._steering = Steering.straight(len(robots), limbs)
         self._has_walked = False
 
@@ -199,20 +201,27 @@ class Coordinator:
         self._planned = self._table.command(tick, None)
         phases, clock = self._planned.phase, self._clock(tick)
         limbs = self._limbs.step(self._shared, sensed, phases, walking=walking)
-        limb_state = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
-        self._axis = self._gaits.axis_phase(limb_state.limb_phase, clock)
-        spine_state = self._spine.step(limb_state, self._gaits, clock, self._axis)
+        heard = limbs
+        if not self._all_hear:
+            heard = replace(limbs, limb_phase=np.where(self._hears, limbs.limb_phase, phases))
+        self._axis = self._gaits.axis_phase(heard.limb_phase, clock)
+        spine_state = self._spine.step(heard, self._gaits, clock, self._axis)
         axis_state = self._tail.step(spine_state, self._gaits, clock)
-        self._shared = replace(axis_state, limb_phase=limbs.limb_phase)
+        self._shared = axis_state if self._all_hear else replace(axis_state, limb_phase=limbs.limb_phase)
 
     def _posture(self) -> Float[np.ndarray, "run servo"]:
         """Return the servo angles; those of the table for runs without phase lead and steering."""
         table = self._planned.targets
-        is_adjusted = self._limbs.phase_lead.any(axis=1) | self._steering.is_active()
+        is_adjusted: np.ndarray = np.logical_or.reduce(self._limbs.phase_lead, axis=1)
+        if self._heading is not None:
+            is_adjusted |= self._steering.is_active()
         if not is_adjusted.any():
             return table
-        steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
-        return np.where(is_adjusted[:, None], self._gaits.targets(self._shared.limb_phase, self._axis, steer), table)
+        steer = _STRAIGHT
+        if self._heading is not None:
+            steer = Steer(stroke=1.0 + self._steering.stroke, bend=self._steering.trunk)
+        targets = self._gaits.targets(self._shared.limb_phase, self._axis, steer)
+        return targets if is_adjusted.all() else np.where(is_adjusted[:, None], targets, table)
 
 
 class _LoadNoise:

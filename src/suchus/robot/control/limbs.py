@@ -14,6 +14,7 @@ from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import GRAVITY, Layout, Robot, layout
 from suchus.robot.motion import Gait
+from suchus.robot.motion.limbs import in_steps
 
 _DIAGONAL = 0.02  # [cycle]; greatest deviation from diagonal pairs in a gait for laws that make such pairs
 
@@ -114,7 +115,8 @@ class Loads:
         self._weight_per_limb = np.array([robot.mass * GRAVITY / max(len(place.limbs), 1) for robot in robots])[:, None]
         self._torque = np.array([_trunk_torque(robot) for robot in robots])[:, None]
         self._sides = np.array([limb.side * (-1.0) ** limb.number for limb in place.limbs])
-        self._yaw = list(place.trunk_yaw)
+        self._yaw = in_steps(place.trunk_yaw)
+        self._has_trunk = bool(self._trunk.any())
         self._load: np.ndarray | None = None
         self._twist: np.ndarray | None = None
 
@@ -139,9 +141,10 @@ class Loads:
             return np.zeros_like(phase)
         angle = 2 * pi * (phase + self._mid_stance_phase)
         load_feedback = (self._weights * self._load[:, None, :]).sum(axis=-1)
-        return np.asarray(
-            np.cos(angle - self._shift) * load_feedback + self._trunk * np.cos(angle) * self._sides * self._twist
-        )
+        brake = np.cos(angle - self._shift) * load_feedback
+        if self._has_trunk:
+            brake = brake + self._trunk * np.cos(angle) * self._sides * self._twist
+        return np.asarray(brake)
 
 
 class Limbs:

@@ -11,7 +11,7 @@ from suchus.robot.control.sensed import Sensed, decay_factor, finite
 from suchus.robot.control.shared import Shared
 from suchus.robot.design import Robot, layout, servo_ranges
 from suchus.robot.motion import Batch
-from suchus.robot.motion.limbs import bounded
+from suchus.robot.motion.limbs import bounded, in_steps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +54,8 @@ class SpineController:
         self._has_rule = bool(self._is_active.any())
         self._share = np.array([0.0 if rule is None else rule.share for rule in rules])[:, None]
         self._keep = np.array([0.0 if rule is None else decay_factor(rule.delay, period) for rule in rules])
-        self._yaw = list(layout(robots[0]).trunk_yaw)
+        self._yaw = in_steps(layout(robots[0]).trunk_yaw)
+        self._are_all_active = bool(self._is_active.all())
         ranges = np.array([servo_ranges(robot)[self._yaw] for robot in robots])
         self._lower_bound, self._upper_bound = ranges[..., 0], ranges[..., 1]
         self._lacking = np.zeros(len(robots))
@@ -96,9 +97,10 @@ class SpineController:
             return targets
         lacking = target_bend - finite(sensed.servo_position[:, self._yaw]).sum(axis=1)
         self._lacking = lacking + self._keep * (self._lacking - lacking)
-        commanded = bounded(
-            targets[:, self._yaw] + self._share * self._lacking[:, None], self._lower_bound, self._upper_bound
-        )
+        asked = targets[:, self._yaw]
+        commanded = bounded(asked + self._share * self._lacking[:, None], self._lower_bound, self._upper_bound)
+        if not self._are_all_active:
+            commanded = np.where(self._is_active[:, None], commanded, asked)
         corrected = targets.copy()
-        corrected[:, self._yaw] = np.where(self._is_active[:, None], commanded, targets[:, self._yaw])
+        corrected[:, self._yaw] = commanded
         return corrected

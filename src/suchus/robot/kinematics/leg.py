@@ -5,7 +5,8 @@ right legs share the formulas (the right ones are mirrored). Positive angles mov
 foot forward (yaw) and down (pitch) and bend the shank down (knee).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -81,14 +82,65 @@ def inverse(
         check_sign(sign, name)
     foot = rows(foot, 3, "the foot's place")
     points = np.ascontiguousarray(foot).reshape(-1, 3)
+    angles, is_reachable = solve(Lengths.of([leg]), points, knee=knee, side=side)
+    if not is_reachable:
+        raise _unreachable(leg, points)
+    return angles.reshape(foot.shape)
+
+
+class Lengths(NamedTuple):
+    """The lengths of the leg of each of some points, or of the one leg of all of them."""
+
+    hip_offset: float | Float[np.ndarray, " point"]
+    """Distance from the midline to the yaw axis [m]."""
+    femur: float | Float[np.ndarray, " point"]
+    """Length from hip to knee [m]."""
+    tibia: float | Float[np.ndarray, " point"]
+    """Length from knee to foot [m]."""
+    squares: float | Float[np.ndarray, " point"]
+    """Sum of the squares of femur and tibia [m2]."""
+    double_product: float | Float[np.ndarray, " point"]
+    """Twice the product of femur and tibia [m2]."""
+
+    @classmethod
+    def of(cls, legs: Sequence[LegLinks], points: int = 1) -> "Lengths":
+        """Return the lengths of some legs, of which each has as many points, one leg after the other.
+
+        Args:
+            legs: the legs.
+            points: number of points of each leg; of one leg it does not matter.
+        """
+        numbers = [
+            (leg.hip_offset, leg.femur, leg.tibia, leg.femur**2 + leg.tibia**2, 2.0 * leg.femur * leg.tibia)
+            for leg in legs
+        ]
+        is_one = len(set(numbers)) == 1
+        return cls(*numbers[0]) if is_one else cls(*np.repeat(np.array(numbers), points, axis=0).T.copy())
+
+    def part(self, points: slice) -> "Lengths":
+        """Return the lengths of a part of the points."""
+        if not isinstance(self.femur, np.ndarray) or points.stop - points.start >= len(self.femur):
+            return self
+        return Lengths(*(np.asarray(numbers)[points] for numbers in self))
+
+
+def solve(
+    lengths: Lengths, points: Float[np.ndarray, "point 3"], *, knee: int = 1, side: int = 1
+) -> tuple[Float[np.ndarray, "point 3"], bool]:
+    """Return the angles of ``inverse``, and whether every point is within reach; beyond it angles mean nothing [rad].
+
+    Args:
+        lengths: the lengths of the legs.
+        points: places of the feet, each in its leg's base frame [m].
+        knee: sign of the knee angle, 1 (knee up) or -1.
+        side: 1, or -1 for the solution with the yaw turned by half a turn.
+    """
     angles = np.empty_like(points)
     is_reachable = True
     with np.errstate(invalid="ignore", over="ignore"):
         for chunk in _chunks(len(points)):
-            is_reachable &= _solve(leg, points[chunk], angles[chunk], knee, side)
-    if not is_reachable:
-        raise _unreachable(leg, points)
-    return angles.reshape(foot.shape)
+            is_reachable &= _solve(lengths.part(chunk), points[chunk], angles[chunk], knee, side)
+    return angles, is_reachable
 
 
 def jacobian(leg: LegLinks, angles: Float[np.ndarray, "*batch 3"]) -> Float[np.ndarray, "*batch 3 3"]:
@@ -125,7 +177,7 @@ def _chunks(count: int) -> Iterator[slice]:
     return (slice(start, start + CHUNK) for start in range(0, count, CHUNK))
 
 
-def _solve(leg: LegLinks, foot: np.ndarray, angles: np.ndarray, knee: int, side: int) -> bool:
+def _solve(leg: Lengths, foot: np.ndarray, angles: np.ndarray, knee: int, side: int) -> bool:
     """Write the angles of one chunk; return whether every point was within reach."""
     x, y, z = (foot[:, 0] - leg.hip_offset) * side, foot[:, 1] * side, foot[:, 2].copy()
     rho = x * x
@@ -133,8 +185,8 @@ def _solve(leg: LegLinks, foot: np.ndarray, angles: np.ndarray, knee: int, side:
     c3 = z * z
     c3 += rho
     np.sqrt(rho, out=rho)
-    c3 -= leg.femur**2 + leg.tibia**2
-    c3 /= 2.0 * leg.femur * leg.tibia
+    c3 -= leg.squares
+    c3 /= leg.double_product
     is_within_reach = bool(np.maximum.reduce(np.abs(c3)) <= 1.0 + ROUNDING)  # NaN fails
     np.minimum(np.maximum(c3, -1.0, out=c3), 1.0, out=c3)  # as ``numpy.clip``, in less time for few numbers
     s3 = 1.0 - c3

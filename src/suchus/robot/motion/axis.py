@@ -91,6 +91,7 @@ class Waves:
                     self.swing[run, k] += scale * _swing(bend, indices.index(k), len(indices))
                     self.offset[run, k] += scale * bend.offset
         self._real = not self.swing.imag.any()
+        self._real_swing, self._imaginary_swing = self.swing.real.copy(), self.swing.imag.copy()
         self._steady = bool(self.offset.any())
         self.moves = bool(self.swing.any()) or self._steady
         self._is_evenly_shared: dict[tuple[int, ...], tuple[np.ndarray, bool]] = {}
@@ -105,7 +106,9 @@ class Waves:
             size: factor on the swing [-]; None for 1.
         """
         z = np.asarray(z)[..., None]
-        swing_bend = self.swing.real * z.real if self._real else self.swing.real * z.real - self.swing.imag * z.imag
+        swing_bend = self._real_swing * z.real
+        if not self._real:
+            swing_bend = swing_bend - self._imaginary_swing * z.imag
         if size is not None:
             swing_bend = np.asarray(size)[..., None] * swing_bend
         return np.asarray(swing_bend + self.offset if self._steady else swing_bend)

@@ -1,6 +1,6 @@
 """What limbs do at a phase: from foot paths, sweeps and held angles to servo angles, for many runs at once.
 
-``LimbMotion`` works out the limbs of a girdle that move alike, so that the numbers of their gaits are arrays over runs.
+``LimbMotion`` works out limbs that move alike, so that the numbers of their gaits are arrays over limbs and runs.
 """
 
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from suchus.core.errors import OutsideLimits, UnknownName, Unreachable
 from suchus.robot.design import Crank, Girdle, Layout, Robot, layout
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics import limb as limb_kinematics
+from suchus.robot.kinematics.leg import Lengths
 from suchus.robot.kinematics.limb import PlainLeg
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import FixedLimbs, FootPath, Limbs, Sweep
@@ -39,9 +40,14 @@ class Steer(NamedTuple):
     tail: Float[np.ndarray, "*batch"] | float = 0.0
     """Steady lateral bend of the tail besides that of the gait, left positive [rad]."""
 
+    @property
+    def keeps_paths(self) -> bool:
+        """Whether the feet keep the paths of the gait."""
+        return is_number(self.size, 1.0) and is_number(self.stroke, 1.0) and is_number(self.lowering, 0.0)
+
 
 class LimbMotion:
-    """Limbs of one girdle in gaits of one structure: every number is an array over runs.
+    """Limbs of one girdle, or legs of several, in gaits of one structure: every number is an array over runs.
 
     Args:
         robot: the design.
@@ -51,9 +57,11 @@ class LimbMotion:
 
     def __init__(self, robot: Robot, gaits: Sequence[Gait], limb_indices: Sequence[int]) -> None:
         self.robot, self.gaits, self.limb_indices = robot, tuple(gaits), tuple(limb_indices)
-        self.limb = layout(robot).limbs[limb_indices[0]]
+        limbs = layout(robot).limbs
+        self.limb = limbs[limb_indices[0]]
         self._duty = np.array([gait.duty_factor for gait in gaits])
-        self._numbers = _numbers(robot, gaits, self.limb.number)
+        self._numbers = _numbers(robot, gaits, [limbs[i].number for i in limb_indices])
+        self._all = len(limb_indices) == len(limbs)
 
     @property
     def has_paths(self) -> bool:
@@ -73,20 +81,22 @@ class LimbMotion:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        phase, parameters = _limbs_first(limbs, self.limb_indices), self._numbers
+        parameters = self._numbers
         if parameters is None:
             return []
+        phase = self._of_limbs(limbs)
         if isinstance(parameters, np.ndarray):  # held
             return [parameters] * len(self.limb_indices)
         if isinstance(parameters, _Crank):
             stance = parameters.stance
             if steer is not None:
                 stance = np.clip(
-                    np.asarray(steer.size) * _of_limbs(steer.stroke, self.limb_indices) * stance,
+                    np.asarray(steer.size) * self._of_limbs(steer.stroke) * stance,
                     _MIN_STANCE_ANGLE,
                     _MAX_STANCE_ANGLE,
                 )
             return list(self._crank_angle(phase, stance, parameters.down)[..., None])
+        draw = draw and not (parameters.lies_within_reach and (steer is None or steer.keeps_paths))
         try:
             return list(self._angles_at(parameters, *self._feet(parameters, phase, steer), draw=draw))
         except Unreachable as error:
@@ -113,7 +123,7 @@ class LimbMotion:
                 f"gait {self.gaits[0].name!r} has no path for the foot of {self.limb.name}: choose a gait of foot "
                 "paths."
             )
-        forward, outward, down = self._feet(self._numbers, _limbs_first(limbs, self.limb_indices), None)
+        forward, outward, down = self._feet(self._numbers, self._of_limbs(limbs), None)
         return np.stack([forward, np.broadcast_to(outward, forward.shape), down])
 
     def _feet(
@@ -124,15 +134,15 @@ class LimbMotion:
         The first and the last have the shape (limb, *batch); the other broadcasts to it.
         """
         forward, lifted = foot_path(phase, self._duty)
-        stroke, lowering = parameters.stroke, np.zeros(())
+        stroke, lift, outward, ahead, down = (_over_batch(numbers, phase.ndim) for numbers in parameters.metres)
         if steer is not None:
-            stroke = stroke * np.asarray(steer.size) * _of_limbs(steer.stroke, self.limb_indices)
-            lowering = _of_limbs(steer.lowering, self.limb_indices)
-        return (
-            parameters.ahead + stroke * forward,
-            parameters.outward,
-            parameters.down + lowering - parameters.lift * lifted,
-        )
+            if not is_number(steer.size, 1.0):
+                stroke = stroke * np.asarray(steer.size)
+            if not is_number(steer.stroke, 1.0):
+                stroke = stroke * self._of_limbs(steer.stroke)
+            if not is_number(steer.lowering, 0.0):
+                down = down + self._of_limbs(steer.lowering)
+        return ahead + stroke * forward, outward, down - lift * lifted
 
     def _angles_at(
         self, parameters: "_Path", forward: np.ndarray, outward: np.ndarray, down: np.ndarray, *, draw: bool
@@ -146,10 +156,11 @@ class LimbMotion:
             down: distance of the feet below their hips [m].
             draw: draw feet into what limbs reach.
         """
-        if parameters.leg is not None:
+        if parameters.legs is not None:
             foot = np.empty((*forward.shape, 3))
-            foot[..., 0], foot[..., 1], foot[..., 2] = parameters.leg.hip_offset + outward, forward, down
-            return _leg_angles(parameters.leg, parameters.side, foot, draw=draw)
+            aside = _over_batch(parameters.legs.hip_offsets, forward.ndim) + outward
+            foot[..., 0], foot[..., 1], foot[..., 2] = aside, forward, down
+            return parameters.legs.angles(foot, draw=draw)
         foot = np.stack([forward, np.broadcast_to(outward, forward.shape), -down], axis=-1)
         limb = self.limb.girdle.limb
         if draw:
@@ -158,6 +169,18 @@ class LimbMotion:
                 foot, np.zeros(3), (min_reach + _REACH_MARGIN * max_reach, max_reach - _REACH_MARGIN * max_reach)
             )
         return limb_kinematics.inverse(limb, foot, swivel=np.broadcast_to(parameters.swivel, forward.shape))
+
+    def _of_limbs(self, field: np.ndarray | float) -> np.ndarray:
+        """Return phases, or a field of a ``Steer``, of these limbs, shape (limb, *batch), or () where it is one number.
+
+        Args:
+            field: of all limbs of the robot, shape (*batch, limb), or one number.
+        """
+        values = np.asarray(field)
+        if not values.ndim:
+            return values
+        selected = values if self._all else values[..., list(self.limb_indices)]
+        return selected.transpose(selected.ndim - 1, *range(selected.ndim - 1))
 
     def _crank_angle(self, phase: np.ndarray, stance: np.ndarray, down: np.ndarray) -> np.ndarray:
         """Return the angle of a crank, which grows by a whole turn a cycle: the foot goes back below, forward above.
@@ -203,12 +226,37 @@ def bounded(values: Any, lower_bound: Any, upper_bound: Any) -> np.ndarray:
     return np.asarray(np.minimum(np.maximum(values, lower_bound), upper_bound))
 
 
-def girdles(place: Layout) -> list[list[int]]:
-    """Return the limbs that are worked out together: those of a girdle, where its chain has a closed form."""
-    groups: dict[tuple[int, int], list[int]] = {}
+def in_steps(indices: Sequence[int]) -> Any:
+    """Return a slice with which an array gives the values at some indices, where these are evenly spaced, else them.
+
+    A slice takes a third of the time for the few numbers of one run.
+    """
+    places = [int(i) for i in indices]
+    step = places[1] - places[0] if len(places) > 1 else 1
+    if not places or step == 0 or places != list(range(places[0], places[-1] + (1 if step > 0 else -1), step)):
+        return np.array(places, dtype=int)
+    stop = places[-1] + (1 if step > 0 else -1)
+    return slice(places[0], None if stop < 0 else stop, step)
+
+
+def limb_groups(place: Layout, gait: Gait) -> list[list[int]]:
+    """Return the limbs that are worked out together.
+
+    They are all legs of yaw, pitch and knee whose feet follow paths with the knees to one side, else the limbs of a
+    girdle where its chain has a closed form, else each limb.
+
+    Args:
+        place: layout of the robot.
+        gait: one of the gaits of one structure.
+    """
+    groups: dict[tuple[str, int], list[int]] = {}
     for i, limb in enumerate(place.limbs):
-        separate_index = i if limb_kinematics.kind(limb.girdle.limb) == "other" else -1
-        groups.setdefault((limb.number, separate_index), []).append(i)
+        kind, limb_movement = limb_kinematics.kind(limb.girdle.limb), gait.limbs[limb.number] if gait.limbs else None
+        if kind == "leg" and isinstance(limb_movement, FootPath):
+            key = "legs", quarter(limb_movement.swivel)
+        else:
+            key = ("limb", i) if kind == "other" else ("girdle", limb.number)
+        groups.setdefault(key, []).append(i)
     return list(groups.values())
 
 
@@ -275,16 +323,89 @@ def _check_girdle(place: Layout, gait: Gait, girdle: Girdle, limb: Limbs) -> Non
 
 
 class _Path(NamedTuple):
-    """The numbers of the foot paths of one limb, over runs [m]; those of a limb of yaw, pitch and knee have a leg."""
+    """The numbers of the foot paths of some limbs; those of limbs of yaw, pitch and knee have legs."""
 
-    stroke: np.ndarray
-    lift: np.ndarray
-    outward: np.ndarray
-    ahead: np.ndarray
-    down: np.ndarray
+    metres: tuple[np.ndarray, ...]
+    """Stroke, lift, distance outside, ahead and below, each of shape (limb, run) [m]."""
     swivel: np.ndarray
-    leg: PlainLeg | None
-    side: int  # quarter turns of the swivel of a leg: 0 sprawled, 1 knee ahead, -1 elbow behind
+    """Swivel over runs, of limbs of one girdle [rad]."""
+    legs: "_Legs | None"
+    """The legs, if they are such."""
+    lies_within_reach: bool
+    """Whether it is known that a leg reaches every place of its foot's path, so that none needs to be drawn into it."""
+
+
+class _Legs:
+    """Legs of yaw, pitch and knee that stand alike.
+
+    Args:
+        legs: lengths of the leg of each limb.
+        side: 0 sprawled, 1 erect with the knee ahead, -1 erect with the elbow behind.
+    """
+
+    def __init__(self, legs: Sequence[PlainLeg], side: int) -> None:
+        self._legs, self._side = tuple(legs), side
+        self.hip_offsets = np.array([[leg.hip_offset] for leg in legs])
+        """Distance of each yaw axis from the midline, shape (limb, 1) [m]."""
+        self._hips = np.array([[[leg.hip_offset, 0.0, 0.0]] for leg in legs])
+        least, most = np.array([leg.reach for leg in legs]).T
+        self._reach = (least + _REACH_MARGIN)[:, None, None], (most - _REACH_MARGIN)[:, None, None]
+        self._count, self._lengths = 1, Lengths.of(legs)
+
+    def reach_all_of(
+        self, stroke: np.ndarray, lift: np.ndarray, outward: np.ndarray, ahead: np.ndarray, down: np.ndarray
+    ) -> bool:
+        """Return whether the legs reach all of the boxes in which the paths of their feet lie.
+
+        Args:
+            stroke: half of the length of each box, shape (limb, run) [m].
+            lift: height of each box [m].
+            outward: distance of the boxes from the hips outward [m].
+            ahead: distance of their middles forward [m].
+            down: distance of their undersides below the hips [m].
+        """
+        length, height = np.abs(stroke), np.abs(lift)
+        farthest = np.sqrt(outward**2 + (np.abs(ahead) + length) ** 2 + (np.abs(down) + height) ** 2)
+        level, below = np.maximum(np.abs(ahead) - length, 0.0), np.maximum(np.abs(down) - height, 0.0)
+        nearest = np.sqrt(outward**2 + level**2 + below**2)
+        least, most = (bound[..., 0] for bound in self._reach)
+        return bool(((least + _REACH_MARGIN < nearest) & (farthest < most - _REACH_MARGIN)).all())
+
+    def angles(self, foot: Float[np.ndarray, "limb *batch 3"], *, draw: bool) -> np.ndarray:
+        """Return yaw, pitch and knee that bring feet to their places, shape (limb, *batch, 3) [rad].
+
+        Args:
+            foot: outward, forward, down in the base frame of each leg [m].
+            draw: draw feet into what legs reach.
+
+        Raises:
+            Unreachable: a foot is out of reach, and it is not drawn into it.
+        """
+        if draw:
+            flat_foot = foot.reshape(len(foot), -1, 3)
+            foot = _clip_to_reach(flat_foot, self._hips, self._reach).reshape(foot.shape)
+        if self._side == 0:
+            return self._inverse(foot)
+        # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
+        in_plane = float(self._side) * foot[..., 1]
+        flat = np.empty_like(foot)
+        flat[..., 0] = _over_batch(self.hip_offsets, in_plane.ndim) + in_plane
+        flat[..., 1], flat[..., 2] = 0.0, foot[..., 2]
+        angles = np.where(in_plane[..., None] < 0.0, self._inverse(flat, side=-1), self._inverse(flat))
+        angles[..., 0] = float(self._side) * np.pi / 2
+        return angles
+
+    def _inverse(self, foot: np.ndarray, *, side: int = 1) -> np.ndarray:
+        """Return the angles of ``leg_kinematics.inverse``."""
+        points = foot.reshape(-1, 3)
+        count = len(points) // len(self._legs)
+        if count != self._count:  # of a batch each control period has the same number
+            self._count, self._lengths = count, Lengths.of(self._legs, count)
+        angles, is_reachable = leg_kinematics.solve(self._lengths, points, side=side)
+        if not is_reachable:
+            for leg, places in zip(self._legs, foot, strict=True):
+                leg_kinematics.inverse(leg, places, side=side)
+        return angles.reshape(foot.shape)
 
 
 class _Crank(NamedTuple):
@@ -294,75 +415,66 @@ class _Crank(NamedTuple):
     down: np.ndarray
 
 
-def _numbers(robot: Robot, gaits: Sequence[Gait], number: int) -> "_Path | _Crank | np.ndarray | None":
-    """Return the movement of a girdle's limbs in all gaits as arrays over runs; None without limb movements."""
+def _numbers(robot: Robot, gaits: Sequence[Gait], numbers: Sequence[int]) -> "_Path | _Crank | np.ndarray | None":
+    """Return the movement of some limbs in all gaits as arrays over runs; None without limb movements.
+
+    Args:
+        robot: the design.
+        gaits: gaits of each run.
+        numbers: number of the girdle of each limb; several girdles have legs on paths.
+    """
     if not gaits[0].limbs:
         return None
-    limbs: list[Any] = [gait.limbs[number] for gait in gaits]
-    girdle = robot.girdles[number]
+    limbs: list[Any] = [gait.limbs[numbers[0]] for gait in gaits]
+    girdle = robot.girdles[numbers[0]]
     if isinstance(limbs[0], FixedLimbs):
         servos = sum(hinge.servo is not None for hinge in girdle.limb.hinges)
         return np.array([(*limb.angles, *(0.0,) * (servos - len(limb.angles))) for limb in limbs])
     if isinstance(limbs[0], Sweep):
         return _Crank(*(np.array([getattr(limb, name) for limb in limbs]) for name in ("stance", "down")))
-    design, leg = girdle.limb, limb_kinematics.kind(girdle.limb) == "leg"
-    metres = {
-        name: np.array([_metres(getattr(limb, name), design.reach) for limb in limbs])
-        for name in ("stroke", "lift", "outward", "ahead")
-    }
-    return _Path(
-        **metres,
-        down=np.array([hip_height(robot, gait) for gait in gaits]) + girdle.above - design.foot.radius,
-        swivel=np.array([limb.swivel for limb in limbs]),
-        leg=limb_kinematics.plain(girdle) if leg else None,
-        side=quarter(limbs[0].swivel),
-    )
+    is_leg, heights = limb_kinematics.kind(girdle.limb) == "leg", np.array([hip_height(robot, gait) for gait in gaits])
+    metres: list[list[np.ndarray]] = []
+    for number in numbers:
+        carrier, paths = robot.girdles[number], [gait.limbs[number] for gait in gaits]
+        stroke, lift, outward, ahead = (
+            np.array([_metres(getattr(path, name), carrier.limb.reach) for path in paths])
+            for name in ("stroke", "lift", "outward", "ahead")
+        )
+        down = heights + carrier.above - carrier.limb.foot.radius
+        metres.append([stroke, lift, outward, ahead, down])
+    legs = None
+    if is_leg:
+        legs = _Legs([limb_kinematics.plain(robot.girdles[number]) for number in numbers], quarter(limbs[0].swivel))
+    arrays = tuple(np.array(rows) for rows in zip(*metres, strict=True))
+    swivel = np.array([limb.swivel for limb in limbs])
+    return _Path(arrays, swivel, legs, legs is not None and legs.reach_all_of(*arrays))
 
 
-def _limbs_first(values: Float[np.ndarray, "*batch limb"], limb_indices: Sequence[int]) -> np.ndarray:
-    """Return the values of some limbs, shape (limb, *batch)."""
-    selected = values[..., list(limb_indices)]
-    return selected.transpose(selected.ndim - 1, *range(selected.ndim - 1))
+def is_number(field: np.ndarray | float, number: float) -> bool:
+    """Return whether a field of a ``Steer`` is one number, which changes nothing."""
+    return isinstance(field, float) and field == number
 
 
-def _of_limbs(field: np.ndarray | float, limb_indices: Sequence[int]) -> np.ndarray:
-    """Return a field of a ``Steer`` for some limbs, shape (limb, *batch), or () where it is one number."""
-    return _limbs_first(np.asarray(field), limb_indices) if np.ndim(field) else np.asarray(field)
-
-
-def _leg_angles(leg: PlainLeg, side: int, foot: np.ndarray, *, draw: bool) -> np.ndarray:
-    """Return yaw, pitch and knee that bring a foot to its place, sprawled or erect [rad].
+def _over_batch(values: Float[np.ndarray, "limb run"], dimensions: int) -> np.ndarray:
+    """Return numbers of limbs and runs so that they broadcast to an array of shape (limb, *batch).
 
     Args:
-        leg: the lengths.
-        side: 0 sprawled, 1 erect with the knee ahead, -1 erect with the elbow behind.
-        foot: outward, forward, down in the leg's base frame [m].
-        draw: draw the foot into what the leg reaches.
+        values: the numbers.
+        dimensions: number of dimensions of that array.
     """
-    if draw:
-        min_reach, max_reach = leg.reach
-        foot = _clip_to_reach(
-            foot, np.array([leg.hip_offset, 0.0, 0.0]), (min_reach + _REACH_MARGIN, max_reach - _REACH_MARGIN)
-        )
-    if side == 0:
-        return leg_kinematics.inverse(leg, foot)
-    # the plane of an erect leg faces back or forward; in it the foot may lie to either side of the hip
-    in_plane = float(side) * foot[..., 1]
-    flat = np.stack([leg.hip_offset + in_plane, np.zeros_like(in_plane), foot[..., 2]], axis=-1)
-    angles = np.where(
-        in_plane[..., None] < 0.0, leg_kinematics.inverse(leg, flat, side=-1), leg_kinematics.inverse(leg, flat)
-    )
-    angles[..., 0] = float(side) * np.pi / 2
-    return angles
+    if dimensions == 2:
+        return values
+    return values.reshape(len(values), *(1,) * (dimensions - 2), -1) if dimensions > 2 else values[:, 0]
 
 
-def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[float, float]) -> np.ndarray:
+def _clip_to_reach(foot: np.ndarray, hip: np.ndarray, reach: tuple[Any, Any]) -> np.ndarray:
     """Return foot points moved along the line to the hip into the reach of a limb; others stay as they are [m].
 
     Args:
         foot: shape (*batch, 3) [m].
-        hip: shape (3,) [m].
-        reach: nearest and farthest distance of the foot from the hip [m].
+        hip: shape (3,), or broadcasts to that of the feet [m].
+        reach: nearest and farthest distance of the foot from the hip, numbers or arrays that broadcast to
+            (*batch, 1) [m].
     """
     offset, (min_reach, max_reach) = foot - hip, reach
     length = np.sqrt(np.add.reduce(offset * offset, axis=-1, keepdims=True))

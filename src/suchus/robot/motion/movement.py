@@ -19,7 +19,7 @@ from suchus.robot.kinematics import limb as limb_kinematics
 from suchus.robot.kinematics import tail as tail_kinematics
 from suchus.robot.motion.axis import Waves, pitch_hinges, yaw_hinges
 from suchus.robot.motion.gait import Gait
-from suchus.robot.motion.limbs import LimbMotion, Steer, bounded, check_limbs, girdles, quarter
+from suchus.robot.motion.limbs import LimbMotion, Steer, bounded, check_limbs, in_steps, is_number, limb_groups, quarter
 from suchus.robot.motion.parts import AxisRegion, FootPath
 
 START = CRAWL_START
@@ -67,19 +67,23 @@ class Movement:
         self._duty = np.array([gait.duty_factor for gait in gaits])
         self._phases = np.array([gait.limb_phases for gait in gaits], dtype=float)
         self._touch_down = 0.75 - self._duty / 2  # a quarter of a cycle before mid-stance
+        self._limb_touch_down = self._touch_down[:, None]
         self._signs, self._phase_remainder = _references(gaits)
         servos, cables = self.yaw.hinges.servos, self.layout.cables
         self._direct = np.array([k for k, servo in enumerate(servos) if servo not in cables], dtype=int)
-        self._direct_servos = np.array(servos, dtype=int)[self._direct]
+        self._direct_servos = in_steps([servos[k] for k in self._direct])
         self._direct_signs = np.array(self.yaw.hinges.signs)[self._direct]
         self._direct_counts = self.yaw.hinge_counts[:, self._direct]
+        self._direct_hinges = in_steps(self._direct.tolist())
+        self._trunk_yaw = in_steps(self.layout.trunk_yaw)
         self._cables = [
-            (servo, self.layout.cable(servo), [k for k, hinge_servo in enumerate(servos) if hinge_servo == servo])
+            (servo, self.layout.cable(servo), tuple(k for k, hinge_servo in enumerate(servos) if hinge_servo == servo))
             for servo in cables
         ]
-        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in girdles(self.layout)]
+        self._limbs = [LimbMotion(robot, gaits, limb_indices) for limb_indices in limb_groups(self.layout, gaits[0])]
         self._curves = [_Measured(self.layout, gaits, i) for i in range(len(gaits[0].curves))]
         self._lower_bound, self._upper_bound = servo_ranges(robot).T
+        self._hinges_of: dict[AxisRegion, tuple[int, ...]] = {}
 
     def axis_phase(self, limbs: Float[np.ndarray, "*batch limb"]) -> Complex[np.ndarray, "*batch"]:
         """Return the order parameter of the limbs, which the axis follows: their mean on the unit circle [-].
@@ -89,7 +93,7 @@ class Movement:
         Args:
             limbs: phases of the limbs [cycle].
         """
-        angle = 2 * np.pi * (limbs - self._touch_down[:, None] - self._phase_remainder)
+        angle = 2 * np.pi * (limbs - self._limb_touch_down - self._phase_remainder)
         pulls = np.empty((2, *angle.shape))
         np.cos(angle, out=pulls[0])
         np.sin(angle, out=pulls[1])
@@ -98,11 +102,13 @@ class Movement:
 
     def _mean(self, pulls: np.ndarray) -> np.ndarray:
         """Return the signed mean over the limbs, summed in a fixed order so that the batch size changes no bit."""
-        terms = [pulls[..., i] * sign for i, sign in enumerate(self._signs)]
-        while len(terms) > 1:
-            half = (len(terms) + 1) // 2
-            terms = [sum(terms[i + half : i + half + 1], terms[i]) for i in range(half)]
-        return np.asarray(terms[0] / len(self._signs))
+        terms = pulls * self._signs
+        count = len(self._signs)
+        while count > 1:
+            half = (count + 1) // 2
+            terms[..., : count - half] += terms[..., half:count]
+            count = half
+        return np.asarray(terms[..., 0] / len(self._signs))
 
     def axis_of_clock(self, clock: Float[np.ndarray, "*batch"]) -> Complex[np.ndarray, "*batch"]:
         """Return the order parameter that the axis follows at times since the beginning [cycle]."""
@@ -130,7 +136,10 @@ class Movement:
         Raises:
             OutsideLimits: a foot's path is out of reach, and it is not drawn into it.
         """
-        targets = np.zeros((*np.broadcast_shapes(np.shape(limbs)[:-1], np.shape(axis)), len(self.layout.servos)))
+        batch = np.shape(axis)
+        if batch != limbs.shape[:-1]:
+            batch = np.broadcast_shapes(limbs.shape[:-1], batch)
+        targets = np.zeros((*batch, len(self.layout.servos)))
         for group in self._limbs:
             for i, of_limb in zip(
                 group.limb_indices, group.angles(limbs, steer, draw=draw or steer is not None), strict=False
@@ -151,15 +160,17 @@ class Movement:
 
     def bend_of(self, region: AxisRegion, axis: Complex[np.ndarray, "*batch"]) -> Float[np.ndarray, "*batch"]:
         """Return how far a part bends sideways, left positive, measured curves aside [rad]."""
-        return self.yaw.total_bend(self.yaw.hinges.indices_in(region), self.yaw.bends(axis))
+        if region not in self._hinges_of:
+            self._hinges_of[region] = tuple(self.yaw.hinges.indices_in(region))
+        return self.yaw.total_bend(self._hinges_of[region], self.yaw.bends(axis))
 
     def out_of_reach(self, limbs: Float[np.ndarray, "*batch limb"]) -> Float[np.ndarray, "*batch limb"]:
         """Return how far each foot's place lies outside what its limb reaches; 0 without a foot path [m]."""
         reach_error = np.zeros(np.broadcast_shapes(limbs.shape, (1, len(self.layout.limbs))))
         for group in self._limbs:
             if group.has_paths:
-                min_reach, max_reach = limb_kinematics.reach(group.limb.girdle.limb)
                 for i, distance in zip(group.limb_indices, np.linalg.norm(group.feet(limbs), axis=0), strict=True):
+                    min_reach, max_reach = limb_kinematics.reach(self.layout.limbs[i].girdle.limb)
                     reach_error[..., i] = np.maximum(np.maximum(min_reach - distance, distance - max_reach), 0.0)
         return reach_error
 
@@ -175,9 +186,9 @@ class Movement:
         places: dict[int, np.ndarray] = {}
         for group in self._limbs:
             forward, outward, down = group.feet(limbs)
-            places |= zip(
-                group.limb_indices, np.stack([group.limb.girdle.aside + outward, forward, down], axis=-1), strict=True
-            )
+            for k, i in enumerate(group.limb_indices):
+                aside = self.layout.limbs[i].girdle.aside + outward[k]
+                places[i] = np.stack([aside, forward[k], down[k]], axis=-1)
         return np.stack([places[i] for i in range(len(places))], axis=-2)
 
     def _bend(self, targets: np.ndarray, axis: np.ndarray, steer: Steer | None) -> None:
@@ -188,14 +199,14 @@ class Movement:
             axis: what the axis follows, as ``axis_phase`` returns it [-].
             steer: what is asked besides.
         """
-        size = None if steer is None else steer.size
+        size = None if steer is None or is_number(steer.size, 1.0) else steer.size
         tail = 0.0 if steer is None else steer.tail
-        bends_tail = bool(np.any(tail)) if np.ndim(tail) else tail != 0.0
+        bends_tail = not is_number(tail, 0.0) and bool(np.any(tail))
         if self.yaw.moves or bends_tail:
             bends = self.yaw.bends(axis, size)
             if bends_tail:
                 bends = bends + self._of_tail(tail)
-            servo_angles = self._direct_signs * bends[..., self._direct] / self._direct_counts
+            servo_angles = self._direct_signs * bends[..., self._direct_hinges] / self._direct_counts
             targets[..., self._direct_servos] = servo_angles
             for servo, cable, hinge_indices in self._cables:
                 total_bend = self.yaw.hinges.signs[hinge_indices[0]] * self.yaw.total_bend(hinge_indices, bends)
@@ -204,10 +215,8 @@ class Movement:
                 targets[..., servo] = tail_kinematics.servo_angle(cable, total_bend)
         if self.pitch.moves:
             targets[..., list(self.pitch.hinges.servos)] = self.pitch.bends(axis, size) / self.pitch.hinge_counts
-        if steer is not None and self.layout.trunk_yaw:
-            targets[..., list(self.layout.trunk_yaw)] += (np.asarray(steer.bend) / len(self.layout.trunk_yaw))[
-                ..., None
-            ]
+        if steer is not None and self.layout.trunk_yaw and not is_number(steer.bend, 0.0):
+            targets[..., self._trunk_yaw] += (np.asarray(steer.bend) / len(self.layout.trunk_yaw))[..., None]
 
     def _of_tail(self, bend: np.ndarray | float) -> np.ndarray:
         """Return what a steady bend of the tail adds to ``Waves.bends`` at all hinges [rad]."""

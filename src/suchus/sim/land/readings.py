@@ -67,7 +67,8 @@ class Sensors:
     def sensed(self, time: float) -> Sensed:
         """Return the present sensor readings of the robots, in new arrays."""
         rows = self._batch.readings
-        readings = {name: rows[:, columns].copy() for name, columns in self._sensor_columns.items()}
+        new_rows = rows.copy()  # once, in the place of each of its parts
+        readings = {name: new_rows[:, columns] for name, columns in self._sensor_columns.items()}
         pressed = {name: -rows[:, columns] for name, columns in self._pressed.items()}
         depth = self._batch.waters.depths(self._batch.qpos[:, :3])
         return Sensed(time=time, **readings, **pressed, tail_pressure=-self.tail(rows)[..., 2], depth=depth)

@@ -14,7 +14,7 @@ from suchus.core.checks import Checks
 from suchus.core.intervals import CONFIDENCE, look_confidence, planned_looks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, draw_onset, draw_topology, draw_tracks
-from suchus.experiments.catalog.feedback.known import KnownStarts
+from suchus.experiments.catalog.feedback.together import Part, simulate_parts
 from suchus.experiments.experiment import (
     Experiment,
     Measure,
@@ -31,11 +31,11 @@ from suchus.experiments.experiment import (
 from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, Runs
 from suchus.robot.control.topology import topology
 from suchus.robot.design import Robot, layout
-from suchus.robot.design.scale import coarse_step, control_period
+from suchus.robot.design.scale import control_period
 from suchus.robot.gaits import GAITS, default_gait
 from suchus.robot.motion import START, Gait, movement
 from suchus.robot.robots import ROBOTS
-from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances, simulate
+from suchus.sim.land import Ground, Limp, Locked, Push, Run, Tolerances
 from suchus.sim.metrics import heading
 from suchus.sim.metrics.coordination import PHASE_TOLERANCE, cycles_until, phase_error
 
@@ -79,20 +79,24 @@ _TOLD_DISTURBANCES = (*_CLAIM_DISTURBANCES, "kick", "push", "limp_yaw")
 """Those of the claims, and those that the reasons of the verdicts and the explanation name."""
 _TOLD_LAWS = ("off", "own_load", "cross_load", "wrong_sign", *_DISTANCE_LAWS)
 """Those of the claims, and those that the reasons of the verdicts and the explanation name."""
-_CLAIM_MEASURES = {
+_START_MEASURES = {
     *(f"{name}{end}" for name in ("converged_cross_load", "converged_wrong_sign", "way_gain_shared", "way_shared",
       "way_isolated") for end in ("", "_low", "_high")),
-    "way_shared_least", "way_isolated_least", "distortion", "spine_lacking_spine", "spine_lacking_open",
-    "spine_lacking_growth", "kept_undisturbed_spine", "tail_load_tail", "tail_load_open", "tail_pitch_drift",
-    "kept_undisturbed_tail", "locked_spine_loss_closed", "locked_spine_loss_open",
+    "way_shared_least", "way_isolated_least",
 }  # fmt: skip
-"""Measures of the claims; the laws and disturbances of the claims suffice for them."""
+"""Measures of the claims for which the starts under the laws of the claims suffice."""
+_DISTURBED_MEASURES = {
+    "distortion", "spine_lacking_spine", "spine_lacking_open", "spine_lacking_growth", "kept_undisturbed_spine",
+    "tail_load_tail", "tail_load_open", "tail_pitch_drift", "kept_undisturbed_tail", "locked_spine_loss_closed",
+    "locked_spine_loss_open",
+}  # fmt: skip
+"""Measures of the claims for which the disturbances of the claims suffice."""
 REPORTED_ARMS = ("open", "closed", "steered")
 """Controls whose measures are reported."""
-_SINGLE_RULES: Mapping[str, tuple[str, ...]] = {
-    "none": ("limbs", "spine", "tail"), "locked_spine": ("spine",), "uphill": ("tail",),
+_TOLD_ARMS: Mapping[str, tuple[str, ...]] = {
+    "none": ("limbs", "spine", "tail"), "locked_spine": ("spine",), "uphill": ("tail",), "limp_yaw": ("steered",),
 }  # fmt: skip
-"""Disturbances of whose walks with one rule alone something is measured, and that rule."""
+"""Disturbances of which more is told than of walks without a rule and with all three, and the controls of that."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,9 +138,9 @@ class Feedback(Experiment):
     """Number of random initial limb phases of each law that is only compared [-]: the first of the judged laws'."""
     sharing_starts: int = 32
     """Greatest number of random initial limb phases with and without sharing [-]. After half of them sampling ends if
-    the claim has a word by then."""
+    the claim has a word by then, and for the verdicts after a quarter of them."""
     early_end: bool = True
-    """Whether sampling with and without sharing ends after half of the starts if the claim has a word by then."""
+    """Whether sampling with and without sharing ends before the last start if the claim has a word by then."""
     judged_cycles: int = 7
     """Simulated duration of each start whose converged fraction is judged [cycle]. The slowest of 72 starts converges
     after 3.5 cycles, and the wrong sign has as long."""
@@ -159,8 +163,9 @@ class Feedback(Experiment):
     """Names of the disturbances that are simulated; the measures of others are not known."""
     extent: Literal["whole", "verdicts"] = "whole"
     """How much is simulated: the whole, or what the verdicts and their reasons need. Then the law that feels the
-    trunk's torque is left out, so are single rules under disturbances in which nothing is measured of them, and a start
-    ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law goes on."""
+    trunk's torque is left out, so are single rules and the heading loop under disturbances in which nothing is told of
+    them, and a start ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law
+    goes on. Sampling with and without sharing has three looks in the place of two."""
     tolerances: Tolerances = field(default_factory=Tolerances)
     """Tolerances of the robots of the starts, each built of the design, and of their grounds."""
     seed: int = 0
@@ -194,7 +199,8 @@ class Feedback(Experiment):
         """Return the same question with fewer starts of the laws that are only compared, and fewer disturbances.
 
         A judged start has six cycles: the slowest converges after 3.5 and holds for two. It ends once it is known
-        whether it converges.
+        whether it converges. Those with and without sharing keep their twelve: after eight the gain by sharing still
+        grows.
         """
         return replace(
             self,
@@ -237,19 +243,17 @@ class Feedback(Experiment):
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Simulate crawls from random initial phases, then disturbances of a robot whose phases are right."""
         laws = tuple(STARTS) if self.extent == "whole" else _TOLD_LAWS
-        starts, pair = self._start_record(staged(progress, "random starts", 0.0, 0.7), laws)
-        disturbed = self._disturbance_record(staged(progress, "disturbances", 0.7, 1.0), self.disturbances)
-        record = xr.merge([starts, disturbed])
-        return SimulationResult(record=record, replays=self._replays(pair))
+        starts, disturbed, pair = self._records(progress, laws, self.disturbances)
+        return SimulationResult(record=xr.merge([starts, disturbed]), replays=self._replays(pair))
 
     def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; those of the claims need fewer laws and disturbances."""
-        if not set(measure_names) <= _CLAIM_MEASURES:
+        if not set(measure_names) <= _START_MEASURES | _DISTURBED_MEASURES:
             return super(Feedback, self).simulate_measures(measure_names, progress)
-        starts, _ = self._start_record(staged(progress, "random starts", 0.0, 0.8), _CLAIM_LAWS)
+        needs_disturbances = not set(measure_names) <= _START_MEASURES
+        starts, disturbed, _ = self._records(progress, _CLAIM_LAWS, _CLAIM_DISTURBANCES if needs_disturbances else ())
         measures = start_measures(starts, self.gait, self.hold)
-        if not set(measure_names) <= measures.keys():
-            disturbed = self._disturbance_record(staged(progress, "disturbances", 0.8, 1.0), _CLAIM_DISTURBANCES)
+        if needs_disturbances:
             measures |= disturbed_measures(disturbed, self.gait, self.hold, self.after)
         return Measures({name: measures[name] for name in measure_names})
 
@@ -294,101 +298,131 @@ class Feedback(Experiment):
         """Time at which the disturbance begins [s]."""
         return START + self.gait.period
 
-    def _start_record(self, progress: Any, laws: Collection[str] = tuple(STARTS)) -> tuple[xr.Dataset, xr.Dataset]:
-        """Simulate the random starts of every law, those with and without sharing until their claim has a word.
+    @property
+    def _looks(self) -> tuple[int, ...]:
+        """Numbers of starts with and without sharing after which sampling may end [-]."""
+        count = min(self.sharing_starts, self.starts)
+        return planned_looks(count, 2 if self.extent == "whole" else 3) if self.early_end else (count,)
+
+    def _records(
+        self, progress: Progress, laws: Collection[str], disturbances: Sequence[str] = ()
+    ) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
+        """Simulate random starts and disturbances, those with and without sharing until their claim has a word.
 
         Args:
             progress: callback that gets the finished fraction.
             laws: names of ``STARTS`` to simulate, the judged laws among them; the result is NaN for the others.
+            disturbances: names of ``DISTURBANCES`` to simulate.
 
         Returns:
             Limb phases (law, start, start_time, leg) [cycle] and displacements (law, start, start_time) [m], NaN where
-            a law has fewer or shorter starts than another. The second dataset is the record of the first start under
-            the laws ``cross_load`` and ``off``.
+            a law has fewer or shorter starts than another; the record of the disturbances, see
+            ``_disturbance_record``, empty without any; the record of the first start under the laws ``cross_load`` and
+            ``off``.
         """
         judged_laws, sharing_laws = ([law for law in laws if law in group] for group in (_JUDGED_LAWS, _DISTANCE_LAWS))
         compared_laws = [law for law in laws if law not in (*judged_laws, *sharing_laws)]
-        data, pair = self._simulate_starts(
-            judged_laws, range(self.starts), self.judged_cycles, staged(progress, "", 0.0, 0.4)
-        )
-        parts = [data]
-        if compared_laws:
-            starts = range(min(self.compared_starts, self.starts))
-            parts.append(self._simulate_starts(compared_laws, starts, self.cycles, staged(progress, "", 0.4, 0.6))[0])
+        groups = [
+            (names, starts, cycles)
+            for names, starts, cycles in (
+                (judged_laws, range(self.starts), self.judged_cycles),
+                (compared_laws, range(min(self.compared_starts, self.starts)), self.cycles),
+                (sharing_laws, range(self._looks[0]), self.cycles),
+            )
+            if names
+        ]
+        parts = [self._start_part(*group) for group in groups]
+        if disturbances:
+            parts.append(self._disturbance_part(disturbances))
+        records = self._simulate(parts, staged(progress, "random starts and disturbances", 0.0, 0.8))
+        data = [self._start_data(*group, record) for group, record in zip(groups, records, strict=False)]
         if sharing_laws:
-            parts.append(self._sharing_record(sharing_laws, staged(progress, "", 0.6, 1.0)))
-        record = reduce(xr.Dataset.combine_first, parts).reindex(law=list(STARTS))
-        return record.drop_vars("start"), pair
+            data[-1] = self._sharing_record(data[-1], staged(progress, "more starts", 0.8, 1.0))
+        starts = reduce(xr.Dataset.combine_first, data).reindex(law=list(STARTS)).drop_vars("start")
+        disturbed = self._disturbance_record(disturbances, records[-1]) if disturbances else xr.Dataset()
+        cells = self._cells(judged_laws, range(self.starts))
+        return starts, disturbed, records[0].isel(run=[cells.index((law, 0)) for law in ("cross_load", "off")])
 
-    def _sharing_record(self, laws: Sequence[str], progress: Any) -> xr.Dataset:
-        """Simulate random starts with and without sharing until the claim has a word, or there are no more.
+    def _simulate(self, parts: Sequence[Part], progress: Progress) -> list[xr.Dataset]:
+        """Return the record of each part."""
+        return simulate_parts(parts, progress, known_after=None if self.extent == "whole" else self.hold)
+
+    def _sharing_record(self, first_starts: xr.Dataset, progress: Progress) -> xr.Dataset:
+        """Simulate more random starts with and without sharing until the claim has a word, or there are no more.
 
         Args:
-            laws: names of ``STARTS``.
+            first_starts: limb phases and displacements of the starts up to the first look.
             progress: callback that gets the finished fraction.
         """
-        count = min(self.sharing_starts, self.starts)
-        looks = planned_looks(count) if self.early_end else (count,)
-        parts: list[xr.Dataset] = []
-        for first, end in pairwise((0, *looks)):
-            stage = staged(progress, "", first / count, end / count)
-            parts.append(self._simulate_starts(laws, range(first, end), self.cycles, stage)[0])
+        laws, looks, parts = [str(law) for law in first_starts.law.values], self._looks, [first_starts]
+        for end, next_end in pairwise((*looks, looks[-1])):
             record = xr.concat(parts, "start", join="exact", data_vars="minimal")
             record["sharing_looks"] = (
                 (),
                 len(looks),
                 {"units": "1", "long_name": "planned looks of sequential sampling"},
             )
-            if self.has_word("shared_variables", sharing_measures(record, self.gait, self.hold)):
+            if end == looks[-1] or self.has_word("shared_variables", sharing_measures(record, self.gait, self.hold)):
                 break
+            stage = staged(progress, "", end / looks[-1], next_end / looks[-1])
+            parts.append(self._further_starts(laws, range(end, next_end), stage))
         return record
 
-    def _simulate_starts(
-        self, laws: Sequence[str], starts: range, cycles: int, progress: Any
-    ) -> tuple[xr.Dataset, xr.Dataset]:
-        """Simulate some random starts of some laws.
+    def _further_starts(self, laws: Sequence[str], starts: range, progress: Progress) -> xr.Dataset:
+        """Return limb phases and displacements of some more random starts of some laws, see ``_start_data``."""
+        (record,) = self._simulate([self._start_part(laws, starts, self.cycles)], progress)
+        return self._start_data(laws, starts, self.cycles, record)
 
-        The phases of a law that senses nothing follow without physics; its first start is simulated all the same.
+    def _controls(self, laws: Sequence[str]) -> dict[str, Coordinated]:
+        """Return the controls of some laws of ``STARTS`` as the body allows them, by name."""
+        return {law: self._suited_control(STARTS[law]) for law in laws}
+
+    def _open_loop_laws(self, laws: Sequence[str]) -> list[str]:
+        """Return those of some laws that sense nothing, so that their phases follow without physics."""
+        controls = self._controls(laws)
+        return [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
+
+    def _cells(self, laws: Sequence[str], starts: range) -> list[tuple[str, int]]:
+        """Return law and number of the starts that are simulated: of a law that senses nothing the first alone."""
+        open_loop_laws = self._open_loop_laws(laws)
+        return [(law, i) for law in laws for i in starts if i == 0 or law not in open_loop_laws]
+
+    def _start_part(self, laws: Sequence[str], starts: range, cycles: int) -> Part:
+        """Return the runs of some random starts of some laws.
 
         Args:
             laws: names of ``STARTS``.
             starts: numbers of the starts.
             cycles: simulated duration of each [cycle].
-            progress: callback that gets the finished fraction.
-
-        Returns:
-            Limb phases and displacements, see ``_start_record``, and the record of the first start under the laws
-            ``cross_load`` and ``off``, empty where they are not among the laws.
         """
-        controls = {law: self._suited_control(STARTS[law]) for law in laws}
-        open_loop_laws = [law for law, control in controls.items() if not control.feels and law not in _DISTANCE_LAWS]
-        cells = [(law, i) for law in laws for i in starts if i == 0 or law not in open_loop_laws]
+        controls, cells = self._controls(laws), self._cells(laws, starts)
         runs = [
             self.tolerances.draw_run(
                 Run(robot=self.robot, gait=self.gait, control=controls[law], seed=self.seed + i), self.seed + i
             )
             for law, i in cells
         ]
-        is_shown = np.array([i == 0 or law in _DISTANCE_LAWS for law, i in cells])
-        is_whole = self.extent == "whole"
-        record = simulate(
-            runs,
-            duration=START + cycles * self.gait.period,
-            timestep=coarse_step(self.robot),
-            sample_stride=10,
-            effort=False,
-            ends=None if is_whole else KnownStarts(self.gait, cycles, self.hold, is_shown=is_shown),
-            progress=progress,
-        )
+        return Part(runs, cycles, np.array([i == 0 or law in _DISTANCE_LAWS for law, i in cells]))
+
+    def _start_data(self, laws: Sequence[str], starts: range, cycles: int, record: xr.Dataset) -> xr.Dataset:
+        """Return limb phases and displacements of some random starts of some laws, see ``_records``.
+
+        Args:
+            laws: names of ``STARTS``.
+            starts: numbers of the starts.
+            cycles: simulated duration of each [cycle].
+            record: record of the runs of ``_start_part``.
+        """
+        controls, cells = self._controls(laws), self._cells(laws, starts)
         shape = (len(laws), len(starts), record.sizes["time"])
         phase, distance = np.full((*shape, record.sizes["leg"]), np.nan), np.full(shape, np.nan)
-        for law in open_loop_laws:
+        for law in self._open_loop_laws(laws):
             phase[laws.index(law)] = self._phases(controls[law], starts, record.time.values)
         indices = tuple(np.array([(laws.index(law), i - starts.start) for law, i in cells]).T)
         phase[indices] = record.limb_phase.transpose("run", "time", "leg").values
         distance[indices] = record.centre_of_mass.sel(xyz="x").transpose("run", "time").values
         dims, metre = ("law", "start", "start_time"), {"units": "m"}
-        data = xr.Dataset(
+        return xr.Dataset(
             {
                 "start_phase": ((*dims, "leg"), phase, {"units": "1", "long_name": "phase of each limb [cycle]"}),
                 "start_way": (dims, distance, metre | {"long_name": "displacement of the centre of mass along x"}),
@@ -401,8 +435,6 @@ class Feedback(Experiment):
                 "leg": record.leg.values,
             },
         )
-        pair = [cells.index((law, 0)) for law in ("cross_load", "off") if (law, 0) in cells]
-        return data, record.isel(run=pair)
 
     def _phases(self, control: Coordinated, starts: range, time: np.ndarray) -> np.ndarray:
         """Return the limb phases of some starts under an open-loop law, shape (start, time, limb) [cycle].
@@ -421,12 +453,22 @@ class Feedback(Experiment):
         controller = control.start(runs, period)
         return np.stack([controller.command(int(tick), None).phase for tick in ticks], axis=1)
 
-    def _disturbance_record(self, progress: Any, names: Sequence[str] = DISTURBANCES) -> xr.Dataset:
-        """Simulate every disturbance under every control.
+    def _disturbance_part(self, names: Sequence[str]) -> Part:
+        """Return the runs of some disturbances under every control.
 
         Args:
-            progress: callback that gets the finished fraction.
-            names: names of ``DISTURBANCES`` to simulate; the result is NaN for the others.
+            names: names of ``DISTURBANCES``.
+        """
+        arms = self._arms
+        runs = [self._disturbed_run(arms[arm], name) for name in names for arm in arms if self._has_cell(name, arm)]
+        return Part(runs, 1 + self.after, np.ones(len(runs), dtype=bool))
+
+    def _disturbance_record(self, names: Sequence[str], record: xr.Dataset) -> xr.Dataset:
+        """Return what disturbances do under every control.
+
+        Args:
+            names: names of ``DISTURBANCES``; the result is NaN for the others.
+            record: record of the runs of ``_disturbance_part``.
 
         Returns:
             Position [m], heading [rad], missing bend of the trunk [rad] and limb phases [cycle] over (disturbance, arm,
@@ -434,11 +476,6 @@ class Feedback(Experiment):
         """
         arms, body_layout = self._arms, layout(self.robot)
         is_cell = np.array([[self._has_cell(name, arm) for arm in arms] for name in names])
-        runs = [self._disturbed_run(arms[arm], name) for name in names for arm in arms if self._has_cell(name, arm)]
-        duration = self._disturbance_time + self.after * self.gait.period
-        record = simulate(
-            runs, duration=duration, timestep=coarse_step(self.robot), sample_stride=10, effort=False, progress=progress
-        )
         dims = ("disturbance", "arm", "time")
 
         def gathered(quantity: np.ndarray) -> np.ndarray:
@@ -486,7 +523,7 @@ class Feedback(Experiment):
 
     def _has_cell(self, name: str, arm: str) -> bool:
         """Return whether a control walks under a disturbance."""
-        return self.extent == "whole" or arm in (*REPORTED_ARMS, *_SINGLE_RULES.get(name, ()))
+        return self.extent == "whole" or arm in ("open", "closed", *_TOLD_ARMS.get(name, ()))
 
     def _disturbed_run(self, control: Coordinated, name: str) -> Run:
         """Return the run of a control under a disturbance.

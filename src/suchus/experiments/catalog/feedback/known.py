@@ -6,9 +6,6 @@ from jaxtyping import Bool, Float, Int
 from suchus.robot.motion import START, Gait
 from suchus.sim.metrics.coordination import PHASE_TOLERANCE, greatest_phase_error
 
-STAY = 1.5
-"""Duration in step after which a start counts as converged for good, over that for which it must hold [-]: with two
-cycles to hold, three. In the whole experiment starts go on, and its figure shows whether any leaves later."""
 _ROUNDING = 1e-9  # [cycle]; times are multiples of the sample period up to rounding
 
 
@@ -16,7 +13,8 @@ class KnownStarts:
     """Ends random starts of which it is known whether they converge.
 
     A start does not converge that is out of step when less than ``hold`` is left: it ends there, and is counted as a
-    start that goes on is. A start that has been in step for ``STAY`` times ``hold`` converges.
+    start that goes on is. A start that has been in step for ``hold`` converges: in the whole experiment, where starts
+    go on, none of the article's robot leaves again after more than half of the two cycles.
     """
 
     def __init__(self, gait: Gait, cycles: float, hold: float, *, is_shown: Bool[np.ndarray, " run"]) -> None:
@@ -28,7 +26,7 @@ class KnownStarts:
             hold: least duration in step until the end of a start that converges [cycle].
             is_shown: whether each run lasts until the end, since figures show it.
         """
-        self._gait, self._last_end, self._stay = gait, cycles - hold, STAY * hold
+        self._gait, self._last_end, self._hold = gait, cycles - hold, hold
         self._is_shown = is_shown
         self._out_of_step = np.zeros(len(is_shown))
         self._cycle = 0.0
@@ -44,5 +42,5 @@ class KnownStarts:
         is_outside = greatest_phase_error(phase, self._gait) > PHASE_TOLERANCE
         self._out_of_step[runs[is_outside]] = cycle
         is_lost = is_outside & (cycle + step > self._last_end + _ROUNDING)
-        is_found = cycle - self._out_of_step[runs] >= self._stay - _ROUNDING
+        is_found = cycle - self._out_of_step[runs] >= self._hold - _ROUNDING
         return np.asarray((is_lost | is_found) & ~self._is_shown[runs])
