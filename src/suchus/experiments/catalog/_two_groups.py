@@ -58,7 +58,14 @@ class TwoGroups(Experiment):
         return control_group(self.gait, self.control)
 
     def repeated(
-        self, runs: Sequence[Run], numbers: Numbers, units: Mapping[str, str], duration: float, progress: Progress
+        self,
+        runs: Sequence[Run],
+        numbers: Numbers,
+        units: Mapping[str, str],
+        duration: float,
+        progress: Progress,
+        *,
+        effort: bool = True,
     ) -> xr.Dataset:
         """Return numbers of every condition and robot, as ``repeated_NAME`` over ``condition`` and ``repeat``.
 
@@ -68,10 +75,16 @@ class TwoGroups(Experiment):
             units: units of the numbers, by name.
             duration: duration of each run [s].
             progress: told the share that is done.
+            effort: whether ``numbers`` need what the servos do, see ``simulate``.
         """
         built = self.tolerances.repeats(runs, self.repeats, self.seed)
         record = simulate(
-            built, duration=duration, timestep=coarse_step(self.robot), sample_stride=2, progress=progress
+            built,
+            duration=duration,
+            timestep=coarse_step(self.robot),
+            sample_stride=2,
+            effort=effort,
+            progress=progress,
         )
         shape = (len(runs), self.repeats)
         data = {

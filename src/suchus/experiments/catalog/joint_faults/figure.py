@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from itertools import product
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,8 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
             change = np.array([[100.0 * measures[measure_name] for measure_name in row_names] for row_names in names])
             ax.imshow(np.clip(change, -100.0, 100.0), cmap="RdBu", vmin=-130.0, vmax=130.0, aspect="auto")
             for (i, j), value in np.ndenumerate(change):
-                _cell(ax, i, j, value, [100.0 * measures[f"{names[i][j]}{end}"] for end in ("_low", "_high")])
+                ends = [100.0 * measures.get(f"{names[i][j]}{end}", nan) for end in ("_low", "_high")]
+                _cell(ax, i, j, value, ends)
             ax.set_xticks(range(len(columns)), [column.replace("_", ",\n") for column in columns])
             ax.set_yticks(range(len(rows)), [_row(row, arm) for row in rows])
             ax.tick_params(length=0)
@@ -76,7 +78,7 @@ def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[floa
         row: row of the cell.
         column: column of the cell.
         value: median change [%]; NaN where the intact robot does not move forward.
-        interval: lower and upper bound of the change [%].
+        interval: lower and upper bound of the change [%]; NaN where too few repeats give none.
     """
     colour = "white" if abs(value) > 88.0 else "#222222"
     if not np.isfinite(value):
@@ -84,6 +86,8 @@ def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[floa
         return
     ax.text(column, row - 0.14, write(value, "+.0f"), ha="center", va="center", fontsize=11, color=colour)
     lower_bound, upper_bound = interval
+    if not np.isfinite(interval).all():
+        return
     ax.text(
         column,
         row + 0.27,

@@ -16,6 +16,7 @@ from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -127,6 +128,8 @@ class Terrain(Experiment):
     """Duration for which each run walks [s], 0.5 to 3600."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
+    extent: Extent = "whole"
+    """How much is simulated: without the walks of the pictures for the verdicts."""
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges, and empty lists of surfaces and correlation lengths."""
@@ -145,8 +148,11 @@ class Terrain(Experiment):
             check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def for_verdicts(self) -> "Terrain":
-        """Return the same question without the robot that switches, and with fewer robots on even ground."""
-        return replace(self, switching=False, flat_robots=min(self.flat_robots, 6))
+        """Return the same question without the robot that switches and the walks of the pictures.
+
+        Fewer robots walk on even ground.
+        """
+        return replace(self, switching=False, flat_robots=min(self.flat_robots, 6), extent="verdicts")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""
@@ -186,6 +192,8 @@ class Terrain(Experiment):
         ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.85))
         ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.85, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
+        if self.extent == "verdicts":
+            return SimulationResult(record=ground_record.merge(change_record))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return SimulationResult(record=record, replays=self._replays(record))
 
@@ -469,7 +477,7 @@ class Terrain(Experiment):
         if not self.high_walk.erect:
             posture_text = "the robot's own gait low, as usual and high"
         return {
-            "postures": draw_on_bumps(self.robot, record, posture_text),
+            **({"postures": draw_on_bumps(self.robot, record, posture_text)} if "shown_height" in record else {}),
             "rough_ground": draw_rough(record, GAIT_LINES),
         }
 
