@@ -9,7 +9,7 @@ import xarray as xr
 
 from suchus.article.paper import SNAPSHOT_TIMES
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats, of_robots
 from suchus.experiments.catalog.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
 from suchus.experiments.experiment import (
     Extent,
@@ -46,6 +46,8 @@ from suchus.sim.metrics import (
 _EQUAL_DISPLACEMENT = "limbs_only_equal_displacement"
 _SNAPSHOT_CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted")
 """Conditions whose snapshots are evaluated."""
+_STATED = ("limbs_only", "tail_drag")
+"""Conditions that decide no word."""
 _CHANGES = (
     ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
     ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
@@ -86,10 +88,14 @@ class CrawlStability(TwoGroups):
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     extent: Extent = "whole"
-    """How much is simulated: without longer strokes of the legs alone for the verdicts."""
+    """How much is simulated: without longer strokes of the legs alone for the verdicts, and with fewer robots in
+    conditions that decide no word."""
 
     def for_verdicts(self) -> "CrawlStability":
-        """Return the same question without the strokes with which the legs alone get as far."""
+        """Return the same question without the strokes with which the legs alone get as far.
+
+        Fewer robots walk in conditions that decide no word.
+        """
         return replace(self, extent="verdicts")
 
     def quick(self) -> "CrawlStability":
@@ -126,7 +132,8 @@ class CrawlStability(TwoGroups):
     def _built(self, runs: Sequence[Run], end: float, progress: Progress) -> xr.Dataset:
         """Return the quantities of every condition and robot as built."""
         units = _UNITS | _snapshot_quantities()
-        return self.repeated(runs, _quantities, units, end, progress, effort=False)
+        stated = _STATED if self.extent == "verdicts" else ()
+        return self.repeated(runs, _quantities, units, end, progress, effort=False, stated=stated)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone.
@@ -174,10 +181,9 @@ class CrawlStability(TwoGroups):
         """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
         measures = of_repeats(record, _UNITS)
         for name, quantity, arm, reference in _CHANGES:
-            values = record[f"repeated_{quantity}"]
-            if {arm, reference} <= set(values.condition.values):
-                change = values.sel(condition=arm, drop=True) / values.sel(condition=reference, drop=True) - 1
-                measures |= estimated(name, change, "-")
+            if {arm, reference} <= set(record.condition.values):
+                values, reference_values = of_robots(record, quantity, arm, reference)
+                measures |= estimated(name, values / reference_values - 1, "-")
         measures |= _designed_changes(record)
         if "equal_stroke" in record.attrs:
             measures["stroke_equal_displacement"] = Measure(float(record.attrs["equal_stroke"]), "m")
@@ -188,9 +194,6 @@ class CrawlStability(TwoGroups):
         """Return the measures at the times of the article's snapshots, for each of the snapshot conditions."""
         measures = Measures()
         for condition in self._snapshot_runs(list(record.condition.values)):
-            snapshots = {
-                quantity: record[f"repeated_{quantity}"].sel(condition=condition) for quantity in _snapshot_quantities()
-            }
             for quantity, unit in _snapshot_quantities().items():
                 name_parts = quantity.removesuffix("_ms").rpartition("_")
                 measure_name = (
@@ -198,7 +201,7 @@ class CrawlStability(TwoGroups):
                     if quantity.endswith("_ms")
                     else f"{quantity}_{condition}"
                 )
-                measures |= _estimate_if_majority(measure_name, snapshots[quantity], unit)
+                measures |= _estimate_if_majority(measure_name, *of_robots(record, quantity, condition), unit)
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:

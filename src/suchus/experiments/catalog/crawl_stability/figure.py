@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from suchus.experiments.catalog._two_groups import of_robots, robots_built
 from suchus.robot.design import Robot
 from suchus.robot.motion import START
 from suchus.sim.metrics import height_peak_to_peak, time_window
@@ -64,7 +65,8 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
         figure, axes = panels(1, 1, height=4.0)
         ax = axes[0, 0]
         for i, name in enumerate(names):
-            repeat_fluctuations, row = 1000 * record.repeated_com_height_pp.sel(condition=name), len(names) - i
+            (heights,), row = of_robots(record, "com_height_pp", name), len(names) - i
+            repeat_fluctuations = 1000 * heights
             labels = [
                 ("" if i == 0 else "_") + label for label in ("each robot as built", "their middle", "as designed")
             ]
@@ -87,7 +89,7 @@ def draw_spreads(record: xr.Dataset, names: Sequence[str]) -> Figure:
     return captioned(
         figure,
         "Fluctuation of the height of the centre of mass in every condition: of "
-        f"{record.sizes['repeat']} robots built of the design, whose servos' zeros, play, masses and friction differ "
+        f"{robots_built(record)}, whose servos' zeros, play, masses and friction differ "
         "from it within their tolerances, and of the design itself.",
     )
 

@@ -12,9 +12,10 @@ from suchus.article.paper import CLAIMS, CYCLES
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats, of_robots
 from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_parts, draw_sensitivity
 from suchus.experiments.experiment import (
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -45,6 +46,8 @@ from suchus.sim.metrics import (
 from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
+_STATED = ("limbs_tail_lifted", "spine_only")
+"""Conditions that decide no word."""
 POLICY = "policy"
 """Condition of a trained policy."""
 _CRAWL = belly_crawl.metres
@@ -90,6 +93,8 @@ class Displacement(TwoGroups):
     """A trained policy that crawls beside the groups, at its greatest speed straight ahead; None for none."""
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
     """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
+    extent: Extent = "whole"
+    """How much is simulated: for the verdicts fewer robots in conditions that decide no word."""
 
     def check(self, check: Checks) -> None:
         """Check what the map is drawn over."""
@@ -101,10 +106,14 @@ class Displacement(TwoGroups):
             self.policy.check_robot(self.robot)
 
     def for_verdicts(self) -> "Displacement":
-        """Return the same question with the ends of the map and the gait itself."""
+        """Return the same question with the ends of the map and the gait itself.
+
+        Fewer robots walk in conditions that decide no word.
+        """
         return replace(
             self, strokes=_ends_and(1.0, self.strokes), bends=_ends_and(1.0, self.bends),
             pitches=_ends_and(self.pitches[len(self.pitches) // 2], self.pitches), phases=_ends_and(0.0, self.phases),
+            extent="verdicts",
         )  # fmt: skip
 
     def quick(self) -> "Displacement":
@@ -124,7 +133,8 @@ class Displacement(TwoGroups):
             runs.append(Run(robot=self.robot, gait=self.policy.gait, control=control, label=POLICY))
         record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
         built_progress = staged(progress, "robots as built", 0.1, 0.5)
-        record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress))
+        stated = _STATED if self.extent == "verdicts" else ()
+        record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress, stated=stated))
         record = record.merge(self._displacement_map(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _MIN_DISPLACEMENT_FRACTION * self.robot.length
         return SimulationResult(record=record, replays=self._replays(record))
@@ -221,15 +231,14 @@ class Displacement(TwoGroups):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
         measures = self._without_costs_at_rest(of_repeats(record, _UNITS))
-        forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
         for name, arm, reference in _GAINS:
-            if {arm, reference} <= set(forward):
-                measures |= estimated(f"gain_{name}", forward[arm] - forward[reference], "m")
+            if {arm, reference} <= set(record.condition.values):
+                forward, reference_forward = of_robots(record, "forward", arm, reference)
+                measures |= estimated(f"gain_{name}", forward - reference_forward, "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
-            if control in forward:
-                measures |= estimated(name, forward["coordinated"] / forward[control], "-")
-        if POLICY in forward:
-            measures |= estimated("gain_policy", forward[POLICY] - forward["coordinated"], "m")
+            if control in record.condition.values:
+                forward, control_forward = of_robots(record, "forward", "coordinated", control)
+                measures |= estimated(name, forward / control_forward, "-")
         designed = displacement_of(record).sel(xyz="x").values
         for arm, distance in zip(record.condition.values, designed, strict=True):
             measures[f"forward_{arm}_designed"] = Measure(float(distance), "m")
@@ -337,6 +346,7 @@ _GAINS = (
     ("tail_swing", "coordinated", "tail_still"),
     ("tail_contact", "tail_still", "spine_only"),
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
+    (POLICY, POLICY, "coordinated"),
 )
 """Gains: name, condition with the motion, condition without it."""
 

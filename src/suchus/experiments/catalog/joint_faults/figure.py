@@ -49,6 +49,10 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
         ("With limbs only, of its own displacement [%]", "own_loss_{}_limbs_only", ""),
         ("With limbs only, of that with spine and tail [%]", "loss_{}_limbs_only", "limbs_only"),
     )
+    counts = record.forward.notnull().sum("repeat")
+    few_text = (
+        f" Cells without an interval: of {int(counts.min())} robots." if bool(counts.min() < counts.max()) else ""
+    )
     with styled():
         figure, axes = panels(len(maps), 1, width=5.4, height=len(maps) * (1.0 + 0.46 * len(rows)))
         for ax, (title, name, arm) in zip(axes[:, 0], maps, strict=True):
@@ -66,7 +70,7 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
     return captioned(
         figure,
         "What a failed joint costs: change of displacement [%], median and interval over the repeats, for every "
-        f"reading of the article's 'lost' (limp or locked, one leg or both).{_outwalked(record)}",
+        f"reading of the article's 'lost' (limp or locked, one leg or both).{few_text}{_outwalked(record)}",
     )
 
 
