@@ -41,9 +41,9 @@ def needed_swims(record: xr.Dataset) -> xr.Dataset:
 
 
 def judged_swims(record: xr.Dataset) -> xr.Dataset:
-    """Return the record without stiffer joints, half the time step and the swims below the surface."""
-    is_as_designed = [not str(label).endswith("_stiff") for label in record.label.values]
-    return record.isel(run=is_as_designed).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
+    """Return the record without stiffer joints, the reversed wave, half the time step and swims below the surface."""
+    is_judged = [not str(label).endswith("_stiff") and label != "reversed" for label in record.label.values]
+    return record.isel(run=is_judged).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
 
 
 def told_stands(record: xr.Dataset) -> xr.Dataset:

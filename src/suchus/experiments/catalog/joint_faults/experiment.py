@@ -343,9 +343,8 @@ class JointFaults(TwoGroups):
     def _support(self, progress: Any) -> xr.Dataset:
         """Return the loads that carry the body while the right hind leg, whose pitch joint fails, should swing."""
         runs, step = self._repeat_runs(self._failed_pitch()), coarse_step(self.robot)
-        return support(
-            require_complete(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats
-        )
+        record = simulate(runs, duration=self._duration, timestep=step, effort=False, progress=progress)
+        return support(require_complete(record), self.repeats)
 
     def _replays(self, progress: Any) -> Mapping[str, Replay]:
         """Return the replay of the crawl with the right hind pitch joint limp, and of the intact one."""

@@ -134,8 +134,8 @@ class SwimFree(Experiment):
     """Coefficients of the water that are varied."""
     extent: Extent = "whole"
     """How much swims by sections: the whole, or the motions, the swim that steers and what the verdicts need. Then
-    joints are as they are, no swim is below the surface or at half the time step, and without varied coefficients the
-    speed in real water, whose range they give, is left out."""
+    joints are as they are, no swim is below the surface or at half the time step, nor reversed where a tail alone
+    swims, and without varied coefficients the speed in real water, whose range they give, is left out."""
     level: float = 2.0
     """Depth of the water [m]."""
     depth: float = 0.6
@@ -375,7 +375,7 @@ class SwimFree(Experiment):
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
             for ending, robot in self._joints.items()
             for name, gait in motions.items()
-            if not ending or self.extent == "whole"
+            if self.extent == "whole" or (not ending and (name != "reversed" or "tail_only" not in motions))
         ]
         steered_gait = _steered_gait(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))
