@@ -58,6 +58,11 @@ def compared_crawls(record: xr.Dataset) -> xr.Dataset:
     return kept
 
 
+def without_costs(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without what the servos' work costs."""
+    return record.drop_vars(["repeated_cost_of_transport", "repeated_electrical_cost_of_transport"])
+
+
 def walked_faults(record: xr.Dataset) -> xr.Dataset:
     """Return the record without knees, steering and places of locking."""
     return record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]).drop_dims("hold")
@@ -72,6 +77,7 @@ def judged_walks(record: xr.Dataset) -> xr.Dataset:
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": told_stands,
     "crawl_stability": compared_crawls,
+    "displacement": without_costs,
     "feedback": told_walks,
     "joint_faults": walked_faults,
     "pattern_generator": lambda record: record.drop_dims(["ramp_time", "shore_time"]),

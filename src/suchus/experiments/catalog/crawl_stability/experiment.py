@@ -88,8 +88,8 @@ class CrawlStability(TwoGroups):
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     extent: Extent = "whole"
-    """How much is simulated: without longer strokes of the legs alone for the verdicts, and with fewer robots in
-    conditions that decide no word."""
+    """How much is simulated: without longer strokes of the legs alone for the verdicts, with fewer robots in conditions
+    that decide no word, and no work of servos."""
 
     def for_verdicts(self) -> "CrawlStability":
         """Return the same question without the strokes with which the legs alone get as far.
@@ -108,12 +108,13 @@ class CrawlStability(TwoGroups):
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
         attrs: dict[str, float] = {}
-        if self.extent == "whole":
+        is_whole = self.extent == "whole"
+        if is_whole:
             first_record = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
             stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
             runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
             attrs["equal_stroke"] = stroke_factor * self._stroke()
-        record = simulate(runs, duration=end, progress=staged(progress, "as designed", 0.4, 0.5))
+        record = simulate(runs, duration=end, effort=is_whole, progress=staged(progress, "as designed", 0.4, 0.5))
         built_progress = staged(progress, "robots as built", 0.5, 1.0)
         record = record.merge(self._built(runs, end, built_progress))
         return SimulationResult(record=record.assign_attrs(attrs), replays=self._replays(record))

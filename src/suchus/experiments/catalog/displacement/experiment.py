@@ -94,7 +94,7 @@ class Displacement(TwoGroups):
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
     """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
     extent: Extent = "whole"
-    """How much is simulated: for the verdicts fewer robots in conditions that decide no word."""
+    """How much is simulated: for the verdicts fewer robots in conditions that decide no word, and no work of servos."""
 
     def check(self, check: Checks) -> None:
         """Check what the map is drawn over."""
@@ -131,10 +131,18 @@ class Displacement(TwoGroups):
         if self.policy is not None:
             control = Learned(policy=self.policy, forward=self.policy.max_speed)
             runs.append(Run(robot=self.robot, gait=self.policy.gait, control=control, label=POLICY))
-        record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        built_progress = staged(progress, "robots as built", 0.1, 0.5)
-        stated = _STATED if self.extent == "verdicts" else ()
-        record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress, stated=stated))
+        is_whole = self.extent == "whole"
+        record = simulate(runs, duration=duration, effort=is_whole, progress=staged(progress, "conditions", 0.0, 0.1))
+        built = self.repeated(
+            runs,
+            _quantities_and_costs if is_whole else _quantities,
+            _UNITS,
+            duration,
+            staged(progress, "robots as built", 0.1, 0.5),
+            effort=is_whole,
+            stated=() if is_whole else _STATED,
+        )
+        record = record.merge(built)
         record = record.merge(self._displacement_map(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _MIN_DISPLACEMENT_FRACTION * self.robot.length
         return SimulationResult(record=record, replays=self._replays(record))
@@ -230,7 +238,8 @@ class Displacement(TwoGroups):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
-        measures = self._without_costs_at_rest(of_repeats(record, _UNITS))
+        units = {name: unit for name, unit in _UNITS.items() if f"repeated_{name}" in record}
+        measures = self._without_costs_at_rest(of_repeats(record, units))
         for name, arm, reference in _GAINS:
             if {arm, reference} <= set(record.condition.values):
                 forward, reference_forward = of_robots(record, "forward", arm, reference)
@@ -326,19 +335,26 @@ _UNITS = {
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the quantities of each run by the names of ``_UNITS``; of the two hind feet the worse one counts."""
+    """Return the quantities of each run by the names of ``_UNITS`` but costs; of both hind feet the worse counts."""
     hind = {"leg": record.leg.values[-2:]}
     return {
         "forward": _forward(record),
         "sideways": displacement_of(record).sel(xyz="y"),
         "heading_drift": heading_change(record),
         "slip": slip(record),
-        "cost_of_transport": cost_of_transport(record),
-        "electrical_cost_of_transport": electrical_cost_of_transport(record),
         "hind_duty": duty_factor(record).sel(hind).max("leg"),
         "hind_clearance": foot_clearance(record).sel(hind).min("leg"),
         "two_feet_share": two_feet_share(record),
     }
+
+
+def _quantities_and_costs(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the quantities of each run by the names of ``_UNITS``; the record holds what the servos do."""
+    costs = {
+        "cost_of_transport": cost_of_transport(record),
+        "electrical_cost_of_transport": electrical_cost_of_transport(record),
+    }
+    return _quantities(record) | costs
 
 
 _GAINS = (
