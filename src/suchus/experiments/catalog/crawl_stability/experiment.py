@@ -202,7 +202,8 @@ class CrawlStability(TwoGroups):
                     if quantity.endswith("_ms")
                     else f"{quantity}_{condition}"
                 )
-                measures |= _estimate_if_majority(measure_name, *of_robots(record, quantity, condition), unit)
+                (values,) = of_robots(record, quantity, condition)
+                measures |= _estimate_if_majority(measure_name, values, unit)
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:

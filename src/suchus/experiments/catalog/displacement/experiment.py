@@ -172,10 +172,11 @@ class Displacement(TwoGroups):
         bent_gaits = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
         pitched_gaits = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
         lagged_gaits = [self.gait.lagged(p) for p in self.phases]
-        runs = [Run(robot=self.robot, gait=gait) for gait in (*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits)]
-        distances = _forward(
+        gaits = [*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits]
+        different_gaits = list(dict.fromkeys(gaits))  # the gait itself is a point of each curve
+        different_distances = _forward(
             simulate(
-                runs,
+                [Run(robot=self.robot, gait=gait) for gait in different_gaits],
                 duration=duration,
                 timestep=coarse_step(self.robot),
                 sample_stride=100,
@@ -183,6 +184,7 @@ class Displacement(TwoGroups):
                 progress=progress,
             )
         ).values
+        distances = different_distances[[different_gaits.index(gait) for gait in gaits]]
         distance_groups = np.split(distances, np.cumsum([len(limb_gaits), len(bent_gaits), len(pitched_gaits)]))
         metres = {"units": "m"}
         data = xr.Dataset(
