@@ -41,19 +41,52 @@ def needed_swims(record: xr.Dataset) -> xr.Dataset:
 
 
 def judged_swims(record: xr.Dataset) -> xr.Dataset:
-    """Return the record without stiffer joints, half the time step and the swims below the surface."""
-    is_as_designed = [not str(label).endswith("_stiff") for label in record.label.values]
-    return record.isel(run=is_as_designed).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
+    """Return the record without stiffer joints, the reversed wave, half the time step and swims below the surface."""
+    is_judged = [not str(label).endswith("_stiff") and label != "reversed" for label in record.label.values]
+    return record.isel(run=is_judged).drop_vars("fine_centre_of_mass").drop_dims(["dive", "dive_time"])
+
+
+def told_stands(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without pushes, robots without feedback, the map and the greatest reach of any posture."""
+    return record.sel(feedback=["on"]).drop_dims(["direction", "torque", "forebody", "behind"])
+
+
+def compared_crawls(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without the strokes with which the legs alone get as far."""
+    kept = record.isel(run=slice(-1), condition=slice(-1)).copy()
+    del kept.attrs["equal_stroke"]
+    return kept
+
+
+def without_costs(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without what the servos' work costs."""
+    return record.drop_vars(["repeated_cost_of_transport", "repeated_electrical_cost_of_transport"])
+
+
+def walked_faults(record: xr.Dataset) -> xr.Dataset:
+    """Return the record without knees, steering and places of locking."""
+    return record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]).drop_dims("hold")
+
+
+def judged_walks(record: xr.Dataset) -> xr.Dataset:
+    """Return the record with a range of cycle times and servos of the high walk alone."""
+    is_usual = (record.slower == 1.0) & (record.servo_model == "own")
+    return record.where((record.gait == "high_walk") | is_usual)
 
 
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
-    "bipedal_reach": lambda record: record.drop_dims("direction"),
+    "bipedal_reach": told_stands,
+    "crawl_stability": compared_crawls,
+    "displacement": without_costs,
     "feedback": told_walks,
-    "joint_faults": lambda record: record.isel(joint=slice(0, 4)).drop_vars(["steered_forward", "steered_turn"]),
+    "joint_faults": walked_faults,
+    "pattern_generator": lambda record: record.drop_dims(["ramp_time", "shore_time"]),
+    "salamander": lambda record: record.isel(run=slice(2)),
     "salamander_swim": lambda record: record.drop_dims("animal"),
+    "speed_range": judged_walks,
     "swim_free": judged_swims,
     "swimming": needed_swims,
-    "terrain": lambda record: record.drop_sel(arm="switching"),
+    "terrain": lambda record: record.drop_sel(arm="switching").drop_vars("shown_height"),
 }
 """What is left of a quick form's record, by experiment."""
 

@@ -184,6 +184,37 @@ def test_the_table_has_a_row_for_every_reading_and_repeats_the_measures(outcome)
         assert all(np.isfinite(float(row[k])) for k in row if k not in words)
 
 
+def test_a_cell_with_fewer_robots_has_their_median_and_no_interval(campaign, outcome):
+    whole, is_first = outcome.record, outcome.record.repeat == 0
+    walked = {name: whole[name].where((whole.legs == "one") | is_first) for name in ("forward", "turn")}
+    lifted = {name: whole[name].where(is_first) for name in ("lifted_forward", "lifted_intact_forward")}
+    record = whole.assign(walked | lifted)
+    measures = campaign.measure(record)
+    cell = record.isel(repeat=0).sel(joint="hind_yaw", kind="limp", legs="both", arm="limbs_only")
+    intact = float(record.intact_forward.isel(repeat=0).sel(arm="coordinated"))
+    assert measures["loss_hind_yaw_limp_both_limbs_only"].value == pytest.approx(float(cell.forward) / intact - 1)
+    assert measures["loss_intact_limbs_tail_lifted"].value == pytest.approx(
+        float(record.lifted_intact_forward[0]) / intact - 1
+    )
+    stated = [name for name in measures if "_both_" in name or "tail_lifted" in name]
+    assert stated
+    assert not [name for name in stated if name.endswith(("_low", "_high"))]
+    judged = [name for name in measures if "_one_" in name and "tail_lifted" not in name and "steered" not in name]
+    assert {name: measures[name] for name in judged if np.isfinite(measures[name].value)} == {
+        name: outcome.measures[name] for name in judged if np.isfinite(outcome.measures[name].value)
+    }
+
+
+def test_for_the_verdicts_fewer_robots_walk_where_nothing_is_judged(campaign):
+    short = replace(campaign.for_verdicts(), repeats=3)
+    record = short.simulate().record
+    walked = record.forward.notnull()
+    assert bool(walked.sel(legs="one").all())
+    assert walked.sel(legs="both").sum("repeat").values.tolist() == np.full((2, 4, 2), 2).tolist()
+    whole = replace(short, extent="whole")._campaign(lambda *_: None)
+    assert np.array_equal(whole.forward.where(walked), record.forward, equal_nan=True)
+
+
 def test_what_robust_physics_says_about_lost_joints(outcome):
     value = {name: measure.value for name, measure in outcome.measures.items()}
     # no feet on the ground in front: no forward motion; a held joint is better than a limp one

@@ -61,7 +61,6 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
         "_lock_measures: cycle.dims[0] is the last": "A cycle's index is all that the error of a start is over.",
     },
     "salamander": {
-        "measure: stride[0] is the last": "The last ground's stride is the greatest there with or without the first's.",
         "window: record.period[0] is the last": "All of its runs are of one gait.",
         "axis_wave_measures: mean_cycles['walk'] - mean_cycles['commanded'] the other way round": _SIZE,
     },
@@ -131,7 +130,7 @@ EXCUSED: Mapping[str, Mapping[str, str]] = {
     },
     "joint_loops": {"_loop_errors: float(angle.sel(test='step')[-1]) - step the other way round": _SIZE},
     "displacement": {
-        "measure: forward[POLICY] - forward['coordinated'] the other way round": (
+        "_GAINS: policy policy coordinated the other way round": (
             "In its quick form no policy walks; tests/control/test_learned.py has one that does."
         ),
     },

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cache
 from math import ceil, floor, isfinite, log10, nan
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 import xarray as xr
@@ -30,11 +30,17 @@ from suchus.robot.gaits import default_gait, in_size
 from suchus.robot.motion import Gait, check_limits, suits
 
 __all__ = [
-    "Experiment", "Measure", "Measures", "Outcome", "Progress", "Replay", "SimulationResult", "ends", "estimated",
-    "estimated_fraction", "ranged", "silent", "staged", "stopwatch", "templates", "write",
+    "Experiment", "Extent", "Measure", "Measures", "Outcome", "Progress", "Replay", "SimulationResult", "ends",
+    "estimated", "estimated_fraction", "ranged", "silent", "staged", "stopwatch", "templates", "write",
 ]  # fmt: skip
 ALTERNATIVES = ("displacement", "speed_range", "swim_free", "floating")
 """Experiments that a robot is referred to if it lacks what another one needs; the last takes any robot."""
+Extent = Literal["whole", "verdicts"]
+"""How much of a question is simulated: all of it, or what its verdicts, their reasons and its answers need.
+
+What is left out has no measure, no figure and no sentence. ``Experiment.for_verdicts`` sets it in experiments that have
+a field ``extent``.
+"""
 EXPLANATION = "explanation.md"
 """Template of what an experiment in a folder says decided its outcome."""
 _NUMBER = re.compile(r"\{\{ ([^{}]+?):([a-zA-Z]*\+?(?:\.\d+)?[a-z%]) \}\}")

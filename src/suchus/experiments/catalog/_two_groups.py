@@ -1,9 +1,11 @@
 """What the experiments share that compare a crawl with spine and tail with one without."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import compress
 from typing import ClassVar
 
+import numpy as np
 import xarray as xr
 
 from suchus.article.paper import CYCLES
@@ -16,6 +18,8 @@ from suchus.robot.motion import Gait
 from suchus.robot.robots import ROBOTS
 from suchus.sim.land import Run, Tolerances, simulate
 
+STATED_ROBOTS = 6
+"""Robots that walk for the verdicts in conditions that decide no word: the fewest whose median has an interval [-]."""
 Numbers = Callable[[xr.Dataset], Mapping[str, xr.DataArray]]
 
 
@@ -58,7 +62,15 @@ class TwoGroups(Experiment):
         return control_group(self.gait, self.control)
 
     def repeated(
-        self, runs: Sequence[Run], numbers: Numbers, units: Mapping[str, str], duration: float, progress: Progress
+        self,
+        runs: Sequence[Run],
+        numbers: Numbers,
+        units: Mapping[str, str],
+        duration: float,
+        progress: Progress,
+        *,
+        effort: bool = True,
+        stated: Collection[str] = (),
     ) -> xr.Dataset:
         """Return numbers of every condition and robot, as ``repeated_NAME`` over ``condition`` and ``repeat``.
 
@@ -68,21 +80,53 @@ class TwoGroups(Experiment):
             units: units of the numbers, by name.
             duration: duration of each run [s].
             progress: told the share that is done.
+            effort: whether ``numbers`` need what the servos do, see ``simulate``.
+            stated: conditions in which ``STATED_ROBOTS`` walk at most.
+
+        Returns:
+            The numbers, NaN for robots that do not walk in a condition, and where not all walk in each ``robots``, how
+            many do.
         """
-        built = self.tolerances.repeats(runs, self.repeats, self.seed)
+        few = min(self.repeats, STATED_ROBOTS)
+        robots = np.array([few if run.label in stated else self.repeats for run in runs])
+        walks = (np.arange(self.repeats) < robots[:, None]).ravel()
         record = simulate(
-            built, duration=duration, timestep=coarse_step(self.robot), sample_stride=2, progress=progress
+            list(compress(self.tolerances.repeats(runs, self.repeats, self.seed), walks)),
+            duration=duration,
+            timestep=coarse_step(self.robot),
+            sample_stride=2,
+            effort=effort,
+            progress=progress,
         )
-        shape = (len(runs), self.repeats)
-        data = {
-            f"repeated_{name}": (
-                ("condition", "repeat"),
-                values.values.reshape(shape),
-                {"units": units[name].replace("-", "1")},
-            )
-            for name, values in numbers(record).items()
-        }
-        return xr.Dataset(data, coords={"condition": [run.label for run in runs]})
+        data = xr.Dataset(coords={"condition": [run.label for run in runs]})
+        for name, values in numbers(record).items():
+            every = np.full(walks.size, np.nan)
+            every[walks] = values.values
+            attrs = {"units": units[name].replace("-", "1")}
+            data[f"repeated_{name}"] = ("condition", "repeat"), every.reshape(len(runs), self.repeats), attrs
+        if not walks.all():
+            data["robots"] = "condition", robots, {"units": "1", "long_name": "robots that walk"}
+        return data
+
+
+def of_robots(record: xr.Dataset, name: str, *conditions: str) -> tuple[xr.DataArray, ...]:
+    """Return ``repeated_NAME`` in some conditions, each of the robots that walk in all of them.
+
+    Args:
+        record: record of ``TwoGroups.repeated``.
+        name: name of the number.
+        conditions: names of the conditions.
+    """
+    values = record[f"repeated_{name}"]
+    count = int(record.robots.sel(condition=list(conditions)).min()) if "robots" in record else record.sizes["repeat"]
+    return tuple(values.sel(condition=condition, drop=True).isel(repeat=slice(count)) for condition in conditions)
+
+
+def robots_built(record: xr.Dataset) -> str:
+    """Return in words how many robots of the design walked in the conditions of a record."""
+    text = f"{record.sizes['repeat']} robots built of the design"
+    few = int(record.robots.min()) if "robots" in record else record.sizes["repeat"]
+    return text if few == record.sizes["repeat"] else f"{text} ({few} in conditions that decide no word)"
 
 
 def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> Measures:
@@ -95,6 +139,6 @@ def of_repeats(record: xr.Dataset, units: Mapping[str, str]) -> Measures:
     measures = Measures()
     for condition in record.condition.values:
         for name, unit in units.items():
-            values = record[f"repeated_{name}"].sel(condition=condition)
+            (values,) = of_robots(record, name, str(condition))
             measures |= estimated(f"{name}_{condition}", values, unit)
     return measures

@@ -29,6 +29,7 @@ from suchus.experiments.catalog.bipedal_reach.variants import (
 )
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -113,6 +114,9 @@ class BipedalReach(Experiment):
     """Time step of the physics in the run of the figures [s]; sweeps take 5 ms."""
     longer: float = 0.05
     """Fraction by which legs, spine and head are lengthened, one after another [-]."""
+    extent: Extent = "whole"
+    """How much is simulated: without pushes, the map of torque and mass, robots without feedback and the greatest reach
+    of any posture for the verdicts."""
 
     def __post_init__(self) -> None:
         with Checks(self.name(), self) as check:
@@ -126,14 +130,11 @@ class BipedalReach(Experiment):
             check.number("longer", 0.001, 0.2, "")
 
     def for_verdicts(self) -> "BipedalReach":
-        """Return the same question without pushes, with a coarse map of torque and mass, and with a shorter stand.
+        """Return the same question without pushes, the map of torque and mass and robots without feedback.
 
-        The article does not say for how long the robot stands.
+        The stand is shorter: the article does not say for how long the robot stands.
         """
-        return replace(
-            self, hold=min(self.hold, 20.0), torques=_ends_and_middle(self.torques),
-            forebodies=_ends_and_middle(self.forebodies), leads=(), pushes=(),
-        )  # fmt: skip
+        return replace(self, hold=min(self.hold, self.judged_minima["hold"]), extent="verdicts")
 
     def quick(self) -> "BipedalReach":
         """A short stand, the corners of the map, few pushes."""
@@ -161,13 +162,12 @@ class BipedalReach(Experiment):
         """Simulate crawling, standing and sitting down; then map the limits, push the robot, and vary its lengths."""
         standing = Standing(at=START + self.gait.period, hold=self.hold, balance=self.balance)
         record = self._standing_record(standing, staged(progress, "standing", 0.0, 0.2))
-        for study, stage, start, end in (
-            (self._limits, "torque and mass", 0.2, 0.4),
-            (self._toppling_pushes, "pushes", 0.4, 0.85),
-            (self._lengths, "lengths", 0.85, 1.0),
-        ):
-            record = record.merge(study(staged(progress, stage, start, end)))
-        record = record.merge(self._ceiling()).assign_attrs(self._reference_values())
+        if self.extent == "whole":
+            record = record.merge(self._limits(staged(progress, "torque and mass", 0.2, 0.4)))
+            record = record.merge(self._toppling_pushes(staged(progress, "pushes", 0.4, 0.85)))
+            record = record.merge(self._ceiling())
+        record = record.merge(self._lengths(staged(progress, "lengths", 0.85, 1.0)))
+        record = record.assign_attrs(self._reference_values())
         return SimulationResult(record=record, replays=self._replays(record))
 
     def _reference_values(self) -> dict[str, float]:
@@ -203,14 +203,14 @@ class BipedalReach(Experiment):
                 "reach_after": Measure(float(height.sel(time=slice(down_time, None)).max()), "m"),
                 "way_after": Measure(_forward_displacement(record.centre_of_mass.isel(run=0), down_time), "m"),
                 "stretched_length": Measure(facts["stretched"], "m"),
-                "ceiling": Measure(float(record.ceiling.max()), "m"),
+                **_of_any_posture(record),
                 "reach_high_crawl": Measure(float(record.crawl_reach[highest_crawl]), "m"),
                 "distance_high_crawl": Measure(float(record.crawl_way[highest_crawl]), "m"),
                 "hip_height": Measure(facts["hip_height"], "m"),
                 "hip_height_plausible": Measure(facts["hip_height_plausible"], "m"),
                 "cantilever_torque": Measure(facts["cantilever"], "N m"),
                 "pitch_torque": Measure(facts["pitch_torque"], "N m"),
-                "map_told_by_cantilever": Measure(_decided_by_torque(record), "-"),
+                **_of_the_map(record),
             },
         )
         for name, torque in zip(
@@ -239,27 +239,29 @@ class BipedalReach(Experiment):
 
         Returns:
             The record of the run, with ``repeat_reach`` (feedback, repeat, repeat_time) [m] and the stage times [s].
+            For the verdicts there are repeats with feedback alone.
         """
         duration = standing.down_from(self.robot) + self.gait.period
         run = Run(robot=self.robot, gait=self.gait, control=standing)
         record = simulate(
             [run], duration=duration, timestep=self.timestep, sample_stride=2, progress=staged(progress, "", 0.0, 0.5)
         )
-        run_without_feedback = replace(run, control=replace(standing, balance=None))
-        repeat_runs = self.tolerances.repeats((run, run_without_feedback), self.repeats)
+        by_feedback = {"on": run, "off": replace(run, control=replace(standing, balance=None))}
+        if self.extent == "verdicts":
+            del by_feedback["off"]
         repeats = simulate(
-            repeat_runs,
+            self.tolerances.repeats(by_feedback.values(), self.repeats),
             duration=duration,
             timestep=_COARSE_TIMESTEP,
             sample_stride=10,
             effort=False,
             progress=staged(progress, "", 0.5, 1.0),
         )
-        heights = reach(self.robot, repeats).values.reshape(2, self.repeats, -1)
+        heights = reach(self.robot, repeats).values.reshape(len(by_feedback), self.repeats, -1)
         record = record.assign(reach=reach(self.robot, record), margin=static_margin(record), lead=lead(record))
         data = record.assign(
             {"repeat_reach": (("feedback", "repeat", "repeat_time"), heights, {"units": "m"})}
-        ).assign_coords(feedback=["on", "off"], repeat_time=("repeat_time", repeats.time.values, {"units": "s"}))
+        ).assign_coords(feedback=[*by_feedback], repeat_time=("repeat_time", repeats.time.values, {"units": "s"}))
         stages = (START, standing.at, standing.upright_from(self.robot), standing.upright_until(self.robot))
         data.attrs["stages"] = [*stages, standing.down_from(self.robot), duration]
         return data
@@ -408,20 +410,15 @@ class BipedalReach(Experiment):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw postures, angles and heights over time, and what decides them."""
-        record = outcome.record
+        record, min_reach = outcome.record, _STANDING_FRACTION * stretched_length(self.robot)
         return {
             "side_views": draw_side_views(self.robot, record),
             "angles": draw_angles(self.robot, record),
             "height_over_time": draw_heights(record, self.hold),
-            "torque_and_mass": draw_limits(self.robot, record, _STANDING_FRACTION * stretched_length(self.robot)),
-            "ceiling": draw_ceiling(self.robot, record),
+            **({"torque_and_mass": draw_limits(self.robot, record, min_reach)} if "map_reach" in record else {}),
+            **({"ceiling": draw_ceiling(self.robot, record)} if "ceiling" in record else {}),
             **({"pushes": draw_pushes(record, record.attrs["commanded_lead"])} if "push" in record else {}),
         }
-
-
-def _ends_and_middle(values: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the first, the middle and the last of some values."""
-    return tuple(values[i] for i in sorted({0, len(values) // 2, len(values) - 1}))
 
 
 def _heights(record: xr.Dataset) -> Measures:
@@ -452,7 +449,7 @@ def _pushes(record: xr.Dataset) -> Measures:
     """
     _, _, upright_time, leave_time, _, _ = record.attrs["stages"]
     measures = Measures()
-    for feedback in ("on", "off"):
+    for feedback in record.feedback.values:
         height = record.repeat_reach.sel(feedback=feedback, repeat_time=slice(upright_time, leave_time))
         is_upright = (height > record.attrs["least"]).all("repeat_time")
         measures[f"stays_up_{feedback}"] = Measure(float(is_upright.mean()), "-")
@@ -499,10 +496,21 @@ def _forward_displacement(position: xr.DataArray, start_time: float) -> float:
     return float(x[-1] - x[0])
 
 
-def _decided_by_torque(record: xr.Dataset) -> float:
-    """Return the fraction of robots on the map for which the cantilever torque alone predicts the outcome [-]."""
+def _of_any_posture(record: xr.Dataset) -> Measures:
+    """Return the greatest reach of any posture [m]; nothing where it was not searched."""
+    return Measures({"ceiling": Measure(float(record.ceiling.max()), "m")} if "ceiling" in record else {})
+
+
+def _of_the_map(record: xr.Dataset) -> Measures:
+    """Return the fraction of robots on the map for which the cantilever torque alone predicts the outcome [-].
+
+    There is nothing where no map was made.
+    """
+    if "map_reach" not in record:
+        return Measures()
     stands = record.map_reach > record.attrs["up"]
-    return float((stands == (record.torque > record.map_cantilever)).mean())
+    told_fraction = float((stands == (record.torque > record.map_cantilever)).mean())
+    return Measures({"map_told_by_cantilever": Measure(told_fraction, "-")})
 
 
 def _required_hip_height(record: xr.Dataset, height: float, crawl_heights: np.ndarray) -> np.ndarray:

@@ -66,7 +66,8 @@ def _plot_heights(ax: Axes, record: xr.Dataset, begin: float, stop: float) -> No
         stop: end of the interval [s].
     """
     repeat_heights = record.repeat_reach.sel(repeat_time=slice(begin, stop))
-    for feedback, colour in _FEEDBACK.items():
+    for feedback in repeat_heights.feedback.values:
+        colour = _FEEDBACK[str(feedback)]
         band = repeat_heights.sel(feedback=feedback)
         label = f"noisy servos, feedback {feedback}"
         ax.fill_between(

@@ -9,9 +9,10 @@ import xarray as xr
 
 from suchus.article.paper import SNAPSHOT_TIMES
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats, of_robots
 from suchus.experiments.catalog.crawl_stability.figure import draw_heights, draw_snapshots, draw_spreads
 from suchus.experiments.experiment import (
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -45,6 +46,8 @@ from suchus.sim.metrics import (
 _EQUAL_DISPLACEMENT = "limbs_only_equal_displacement"
 _SNAPSHOT_CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted")
 """Conditions whose snapshots are evaluated."""
+_STATED = ("limbs_only", "tail_drag")
+"""Conditions that decide no word."""
 _CHANGES = (
     ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
     ("com_height_pp_change_tail_lifted", "com_height_pp", "coordinated", "limbs_tail_lifted"),
@@ -84,6 +87,17 @@ class CrawlStability(TwoGroups):
     needs = ("limbs", "axis")
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
+    extent: Extent = "whole"
+    """How much is simulated: without longer strokes of the legs alone for the verdicts, with fewer robots in conditions
+    that decide no word, and no work of servos."""
+
+    def for_verdicts(self) -> "CrawlStability":
+        """Return the same question without the strokes with which the legs alone get as far.
+
+        Fewer robots walk in conditions that decide no word.
+        """
+        return replace(self, extent="verdicts")
+
     def quick(self) -> "CrawlStability":
         """One cycle, two repeats."""
         return replace(self, cycles=1, repeats=2)
@@ -93,14 +107,17 @@ class CrawlStability(TwoGroups):
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
-        first_record = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
-        stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
-        runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
-        record = simulate(runs, duration=end, progress=staged(progress, "as designed", 0.4, 0.5))
+        attrs: dict[str, float] = {}
+        is_whole = self.extent == "whole"
+        if is_whole:
+            first_record = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
+            stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
+            runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
+            attrs["equal_stroke"] = stroke_factor * self._stroke()
+        record = simulate(runs, duration=end, effort=is_whole, progress=staged(progress, "as designed", 0.4, 0.5))
         built_progress = staged(progress, "robots as built", 0.5, 1.0)
-        record = record.merge(self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, built_progress))
-        record.attrs["equal_stroke"] = stroke_factor * self._stroke()
-        return SimulationResult(record=record, replays=self._replays(record))
+        record = record.merge(self._built(runs, end, built_progress))
+        return SimulationResult(record=record.assign_attrs(attrs), replays=self._replays(record))
 
     def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; only the conditions that they name are simulated."""
@@ -110,19 +127,31 @@ class CrawlStability(TwoGroups):
         requested_gaits = {arm: gait for arm, gait in arms.items() if any(f"_{arm}" in name for name in measure_names)}
         runs = [Run(robot=self.robot, gait=gait, label=arm) for arm, gait in requested_gaits.items()]
         end = START + self.cycles * self.gait.period
-        record = self.repeated(runs, _quantities, _UNITS | _snapshot_quantities(), end, progress)
+        record = self._built(runs, end, progress)
         return of_repeats(record, _UNITS) | self._snapshots(record)
 
+    def _built(self, runs: Sequence[Run], end: float, progress: Progress) -> xr.Dataset:
+        """Return the quantities of every condition and robot as built."""
+        units = _UNITS | _snapshot_quantities()
+        stated = _STATED if self.extent == "verdicts" else ()
+        return self.repeated(runs, _quantities, units, end, progress, effort=False, stated=stated)
+
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone."""
+        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone.
+
+        For the verdicts the legs alone have the same strokes.
+        """
+        conditions = [str(condition) for condition in record.condition.values]
+        is_as_far = _EQUAL_DISPLACEMENT in conditions
+        ghost, legs = (-1, "longer strokes of the legs alone, just as far") if is_as_far else (1, "the legs alone")
         return replayed(
             "stability_replay.html",
             record.isel(run=0),
             self.robot,
-            ghost=record.isel(run=-1),
-            labels=("spine and tail", "legs alone, as far"),
-            title="Two ways to get as far",
-            caption="With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far.",
+            ghost=record.isel(run=ghost) if len(conditions) > 1 else None,
+            labels=("spine and tail", "legs alone, as far" if is_as_far else "legs alone"),
+            title="Two ways to get as far" if is_as_far else "Two ways to crawl",
+            caption=f"With spine and tail, and, half transparent, with {legs}.",
         )
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
@@ -153,24 +182,19 @@ class CrawlStability(TwoGroups):
         """Return the fluctuation in every condition, its changes, and the snapshots, of the robots as built."""
         measures = of_repeats(record, _UNITS)
         for name, quantity, arm, reference in _CHANGES:
-            values = record[f"repeated_{quantity}"]
-            if {arm, reference} <= set(values.condition.values):
-                change = values.sel(condition=arm, drop=True) / values.sel(condition=reference, drop=True) - 1
-                measures |= estimated(name, change, "-")
+            if {arm, reference} <= set(record.condition.values):
+                values, reference_values = of_robots(record, quantity, arm, reference)
+                measures |= estimated(name, values / reference_values - 1, "-")
         measures |= _designed_changes(record)
-        measures |= {
-            "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
-            "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
-        }
+        if "equal_stroke" in record.attrs:
+            measures["stroke_equal_displacement"] = Measure(float(record.attrs["equal_stroke"]), "m")
+        measures["spine_sine_r2"] = Measure(float(spine_sine_share(record.isel(run=0))), "-")
         return measures | self._snapshots(record)
 
     def _snapshots(self, record: xr.Dataset) -> Measures:
         """Return the measures at the times of the article's snapshots, for each of the snapshot conditions."""
         measures = Measures()
         for condition in self._snapshot_runs(list(record.condition.values)):
-            snapshots = {
-                quantity: record[f"repeated_{quantity}"].sel(condition=condition) for quantity in _snapshot_quantities()
-            }
             for quantity, unit in _snapshot_quantities().items():
                 name_parts = quantity.removesuffix("_ms").rpartition("_")
                 measure_name = (
@@ -178,7 +202,8 @@ class CrawlStability(TwoGroups):
                     if quantity.endswith("_ms")
                     else f"{quantity}_{condition}"
                 )
-                measures |= _estimate_if_majority(measure_name, snapshots[quantity], unit)
+                (values,) = of_robots(record, quantity, condition)
+                measures |= _estimate_if_majority(measure_name, values, unit)
         return measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -187,7 +212,7 @@ class CrawlStability(TwoGroups):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw height over time, the snapshots, the spread."""
-        arms = [str(arm) for arm in outcome.record.condition.values][:-1]
+        arms = [str(arm) for arm in outcome.record.condition.values if arm != _EQUAL_DISPLACEMENT]
         return {
             "height_of_mass": draw_heights(outcome.record, arms),
             "fluctuation": draw_spreads(outcome.record, arms),
@@ -241,7 +266,10 @@ def _designed_changes(record: xr.Dataset) -> Measures:
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the quantities of each run, by the names of ``_UNITS`` and of ``_snapshot_quantities``."""
+    """Return the quantities of each run, by the names of ``_UNITS`` and of ``_snapshot_quantities``.
+
+    The distance from the edge of the support is NaN in conditions without snapshots.
+    """
     quantities = {
         "com_height_pp": height_peak_to_peak(record),
         "com_height_std": height_std(record),
@@ -256,9 +284,11 @@ def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
         {"line_distance": line_distance(record), "standing_feet": stance(record).sum("leg"), "lean": _lean(record)}
     )
     moments["lean_on_two_feet"] = moments.lean.where(moments.standing_feet == 2)
+    shown = np.flatnonzero(np.isin(record.label.values, _SNAPSHOT_CONDITIONS))
     for time in SNAPSHOT_TIMES:
         snapshot = moments.sel(time=time, method="nearest")
-        distances = [support_distance(record.isel(run=i), time) for i in range(record.sizes["run"])]
+        distances = np.full(record.sizes["run"], np.nan)
+        distances[shown] = [support_distance(record.isel(run=i), time) for i in shown]
         snapshot["support_distance"] = ("run", distances)
         quantities |= {f"{name}_{1000 * time:.0f}_ms": snapshot[name] for name in _SNAPSHOT_UNITS}
     return quantities

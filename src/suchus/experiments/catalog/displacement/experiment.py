@@ -12,9 +12,10 @@ from suchus.article.paper import CLAIMS, CYCLES
 from suchus.core.checks import Checks
 from suchus.core.errors import InvalidDesign
 from suchus.experiments.catalog._replayed import replayed
-from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats
+from suchus.experiments.catalog._two_groups import TwoGroups, of_repeats, of_robots
 from suchus.experiments.catalog.displacement.figure import draw_course, draw_crawls, draw_parts, draw_sensitivity
 from suchus.experiments.experiment import (
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -45,6 +46,8 @@ from suchus.sim.metrics import (
 from suchus.sim.metrics import displacement as displacement_of
 
 _GROUPS = CONDITIONS[:2]
+_STATED = ("limbs_tail_lifted", "spine_only")
+"""Conditions that decide no word."""
 POLICY = "policy"
 """Condition of a trained policy."""
 _CRAWL = belly_crawl.metres
@@ -90,6 +93,8 @@ class Displacement(TwoGroups):
     """A trained policy that crawls beside the groups, at its greatest speed straight ahead; None for none."""
     phases: tuple[float, ...] = (-0.5, -0.375, -0.25, -0.15, -0.075, 0.0, 0.075, 0.15, 0.25, 0.375, 0.5)
     """Phase lags of the axis behind the limbs, besides that of the gait, for the curve [cycle]."""
+    extent: Extent = "whole"
+    """How much is simulated: for the verdicts fewer robots in conditions that decide no word, and no work of servos."""
 
     def check(self, check: Checks) -> None:
         """Check what the map is drawn over."""
@@ -101,10 +106,14 @@ class Displacement(TwoGroups):
             self.policy.check_robot(self.robot)
 
     def for_verdicts(self) -> "Displacement":
-        """Return the same question with the ends of the map and the gait itself."""
+        """Return the same question with the ends of the map and the gait itself.
+
+        Fewer robots walk in conditions that decide no word.
+        """
         return replace(
             self, strokes=_ends_and(1.0, self.strokes), bends=_ends_and(1.0, self.bends),
             pitches=_ends_and(self.pitches[len(self.pitches) // 2], self.pitches), phases=_ends_and(0.0, self.phases),
+            extent="verdicts",
         )  # fmt: skip
 
     def quick(self) -> "Displacement":
@@ -122,9 +131,18 @@ class Displacement(TwoGroups):
         if self.policy is not None:
             control = Learned(policy=self.policy, forward=self.policy.max_speed)
             runs.append(Run(robot=self.robot, gait=self.policy.gait, control=control, label=POLICY))
-        record = simulate(runs, duration=duration, progress=staged(progress, "conditions", 0.0, 0.1))
-        built_progress = staged(progress, "robots as built", 0.1, 0.5)
-        record = record.merge(self.repeated(runs, _quantities, _UNITS, duration, built_progress))
+        is_whole = self.extent == "whole"
+        record = simulate(runs, duration=duration, effort=is_whole, progress=staged(progress, "conditions", 0.0, 0.1))
+        built = self.repeated(
+            runs,
+            _quantities_and_costs if is_whole else _quantities,
+            _UNITS,
+            duration,
+            staged(progress, "robots as built", 0.1, 0.5),
+            effort=is_whole,
+            stated=() if is_whole else _STATED,
+        )
+        record = record.merge(built)
         record = record.merge(self._displacement_map(duration, staged(progress, "map", 0.5, 1.0)))
         record.attrs["least"] = _MIN_DISPLACEMENT_FRACTION * self.robot.length
         return SimulationResult(record=record, replays=self._replays(record))
@@ -154,10 +172,11 @@ class Displacement(TwoGroups):
         bent_gaits = [self.gait.strode(s).bent(b) for s in strokes for b in bends]
         pitched_gaits = [gait.lifted(p) for gait in (self.gait, self.control_group) for p in pitches]
         lagged_gaits = [self.gait.lagged(p) for p in self.phases]
-        runs = [Run(robot=self.robot, gait=gait) for gait in (*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits)]
-        distances = _forward(
+        gaits = [*limb_gaits, *bent_gaits, *pitched_gaits, *lagged_gaits]
+        different_gaits = list(dict.fromkeys(gaits))  # the gait itself is a point of each curve
+        different_distances = _forward(
             simulate(
-                runs,
+                [Run(robot=self.robot, gait=gait) for gait in different_gaits],
                 duration=duration,
                 timestep=coarse_step(self.robot),
                 sample_stride=100,
@@ -165,6 +184,7 @@ class Displacement(TwoGroups):
                 progress=progress,
             )
         ).values
+        distances = different_distances[[different_gaits.index(gait) for gait in gaits]]
         distance_groups = np.split(distances, np.cumsum([len(limb_gaits), len(bent_gaits), len(pitched_gaits)]))
         metres = {"units": "m"}
         data = xr.Dataset(
@@ -220,16 +240,16 @@ class Displacement(TwoGroups):
 
     def measure(self, record: xr.Dataset) -> Measures:
         """Return the quantities of each condition, the gain by each part of the axis, and the ends of the map."""
-        measures = self._without_costs_at_rest(of_repeats(record, _UNITS))
-        forward = {str(arm): record.repeated_forward.sel(condition=arm, drop=True) for arm in record.condition.values}
+        units = {name: unit for name, unit in _UNITS.items() if f"repeated_{name}" in record}
+        measures = self._without_costs_at_rest(of_repeats(record, units))
         for name, arm, reference in _GAINS:
-            if {arm, reference} <= set(forward):
-                measures |= estimated(f"gain_{name}", forward[arm] - forward[reference], "m")
+            if {arm, reference} <= set(record.condition.values):
+                forward, reference_forward = of_robots(record, "forward", arm, reference)
+                measures |= estimated(f"gain_{name}", forward - reference_forward, "m")
         for name, control in (("forward_ratio", "limbs_only"), ("forward_ratio_tail_lifted", "limbs_tail_lifted")):
-            if control in forward:
-                measures |= estimated(name, forward["coordinated"] / forward[control], "-")
-        if POLICY in forward:
-            measures |= estimated("gain_policy", forward[POLICY] - forward["coordinated"], "m")
+            if control in record.condition.values:
+                forward, control_forward = of_robots(record, "forward", "coordinated", control)
+                measures |= estimated(name, forward / control_forward, "-")
         designed = displacement_of(record).sel(xyz="x").values
         for arm, distance in zip(record.condition.values, designed, strict=True):
             measures[f"forward_{arm}_designed"] = Measure(float(distance), "m")
@@ -317,19 +337,26 @@ _UNITS = {
 
 
 def _quantities(record: xr.Dataset) -> dict[str, xr.DataArray]:
-    """Return the quantities of each run by the names of ``_UNITS``; of the two hind feet the worse one counts."""
+    """Return the quantities of each run by the names of ``_UNITS`` but costs; of both hind feet the worse counts."""
     hind = {"leg": record.leg.values[-2:]}
     return {
         "forward": _forward(record),
         "sideways": displacement_of(record).sel(xyz="y"),
         "heading_drift": heading_change(record),
         "slip": slip(record),
-        "cost_of_transport": cost_of_transport(record),
-        "electrical_cost_of_transport": electrical_cost_of_transport(record),
         "hind_duty": duty_factor(record).sel(hind).max("leg"),
         "hind_clearance": foot_clearance(record).sel(hind).min("leg"),
         "two_feet_share": two_feet_share(record),
     }
+
+
+def _quantities_and_costs(record: xr.Dataset) -> dict[str, xr.DataArray]:
+    """Return the quantities of each run by the names of ``_UNITS``; the record holds what the servos do."""
+    costs = {
+        "cost_of_transport": cost_of_transport(record),
+        "electrical_cost_of_transport": electrical_cost_of_transport(record),
+    }
+    return _quantities(record) | costs
 
 
 _GAINS = (
@@ -337,6 +364,7 @@ _GAINS = (
     ("tail_swing", "coordinated", "tail_still"),
     ("tail_contact", "tail_still", "spine_only"),
     ("tail_contact_limbs_only", "limbs_only", "limbs_tail_lifted"),
+    (POLICY, POLICY, "coordinated"),
 )
 """Gains: name, condition with the motion, condition without it."""
 

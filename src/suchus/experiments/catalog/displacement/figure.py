@@ -10,6 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from suchus.article.paper import CLAIMS
+from suchus.experiments.catalog._two_groups import of_robots, robots_built
 from suchus.robot.design import Robot
 from suchus.robot.motion import START, Gait
 from suchus.robot.robots import ROBOTS
@@ -89,7 +90,7 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
         figure, axes = panels(1, 1, height=1.0 + 0.5 * len(arms))
         ax = axes[0, 0]
         for i, arm in enumerate(arms):
-            repeat_distances, row = record.repeated_forward.sel(condition=arm), len(arms) - i
+            (repeat_distances,), row = of_robots(record, "forward", arm), len(arms) - i
             median = float(repeat_distances.median())
             labels = [
                 ("" if i == 0 else "_") + label for label in ("each robot as built", "their middle", "as designed")
@@ -117,7 +118,7 @@ def draw_parts(record: xr.Dataset, designed: xr.DataArray, printed_distances: Ma
         ax.legend(loc="lower right")
     return captioned(
         figure,
-        f"What each part of spine and tail adds: {record.sizes['repeat']} robots built of the design, whose servos' "
+        f"What each part of spine and tail adds: {robots_built(record)}, whose servos' "
         "zeros, play, masses and friction differ from it within their tolerances, and the design itself. All "
         "conditions command the same legs.",
     )
@@ -139,7 +140,7 @@ def draw_course(record: xr.Dataset, arms: Sequence[str], printed_distances: Mapp
         draw_lines(ax, x, arms)
         end = float(record.time[-1])
         for i, arm in enumerate(arms):
-            repeat_distances, label = record.repeated_forward.sel(condition=arm), None if i else "each robot as built"
+            (repeat_distances,), label = of_robots(record, "forward", arm), None if i else "each robot as built"
             ax.plot(
                 [end] * repeat_distances.size,
                 repeat_distances,

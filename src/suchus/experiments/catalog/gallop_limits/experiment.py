@@ -37,6 +37,7 @@ from suchus.visual.figures import captioned
 from suchus.visual.figures.style import COLOURS, panels, styled
 
 _RUN_UP = 1.0  # [s]; before the measurement begins
+_MAX_SERVO_SPEED = 30.0  # [rad/s]; no-load speed out of the reach of a hobby servo of this torque
 _FAST_PERIOD = 0.48  # [s]; period of the walks; the robot's own servos are far too slow for it
 
 
@@ -103,10 +104,14 @@ class GallopLimits(Experiment):
                 check.that(len(getattr(self, name)) > 0, f"{self.name()}.{name} is empty; one gait at least is needed")
 
     def for_verdicts(self) -> "GallopLimits":
-        """Return the same question with a coarser map: the speeds up to the own servo's, the next, and the last two."""
+        """Return the same question with a coarser map.
+
+        It has the speeds up to the own servo's, the next, and the highest up to ``_MAX_SERVO_SPEED``.
+        """
         slower = [speed for speed in self.speeds if speed <= self._leg_servo.speed]
-        faster = self.speeds[len(slower) :]
-        return replace(self, speeds=(*slower, *dict.fromkeys((*faster[:1], *faster[1:][-2:]))))
+        faster = [speed for speed in self.speeds[len(slower) :] if speed <= _MAX_SERVO_SPEED]
+        speeds = (*slower, *dict.fromkeys((*faster[:1], *faster[-1:])))
+        return replace(self, speeds=speeds or self.speeds)
 
     def quick(self) -> "GallopLimits":
         """Return two speeds, one torque, one robot as built, half a second, a coarse step."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import combinations, compress, product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,6 +19,7 @@ from suchus.experiments.catalog.joint_faults.figure import (
     draw_tracks,
 )
 from suchus.experiments.experiment import (
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -65,6 +66,8 @@ _SUPPORT_PREFIXES = ("support_share_", "tail_load_", "foot_", "com_")
 """Prefixes of the measures of the loads that carry the body."""
 _HINGES_PER_LIMB = 2
 """Hinges of a limb, from the hip on, whose faults are steered and whose locking position is varied [-]."""
+_STATED_REPEATS = 2
+"""Robots that walk for the verdicts in conditions that are not judged, whose loss is only stated [-]."""
 ARMS = ("coordinated", "limbs_only")
 """With spine and tail, and without."""
 _CELL_DIMS = ("joint", "kind", "legs")
@@ -120,8 +123,9 @@ class JointFaults(TwoGroups):
     hinges: int | None = None
     """Hinges of each limb, from the hip on, that fail one after another; None for all. The article names no knee
     [-]."""
-    steered: bool = True
-    """Whether the judged faults are simulated with feedback rules and heading loop too, for comparison."""
+    extent: Extent = "whole"
+    """How much is simulated: without steering and places of locking for the verdicts, and with fewer robots in the
+    conditions that are not judged: a fault in both legs, and the tail in the air."""
     repeats: int = 6
     """Number of robots built of the design for each condition and fault [-]; six at least give a median an interval."""
     timestep: float = 0.005
@@ -138,8 +142,11 @@ class JointFaults(TwoGroups):
         check.number("lifted", -1.6, 1.6, "rad")
 
     def for_verdicts(self) -> "JointFaults":
-        """Return the same question without failing knees and steering, and with three places of locking."""
-        return replace(self, hinges=_HINGES_PER_LIMB, holds=(0.0, 0.5, 1.0), steered=False)
+        """Return the same question without failing knees, steering and places of locking.
+
+        Fewer robots walk in conditions that are not judged.
+        """
+        return replace(self, hinges=_HINGES_PER_LIMB, extent="verdicts")
 
     def quick(self) -> "JointFaults":
         """One cycle, two repeats, two places of locking."""
@@ -148,7 +155,8 @@ class JointFaults(TwoGroups):
     def simulate(self, progress: Progress = silent) -> SimulationResult:
         """Break joints."""
         record = self._campaign(staged(progress, "campaign", 0.0, 0.75))
-        record = record.merge(self._locking_record(staged(progress, "places of locking", 0.75, 0.82)))
+        if self.extent == "whole":
+            record = record.merge(self._locking_record(staged(progress, "places of locking", 0.75, 0.82)))
         record = record.merge(self._support(staged(progress, "support", 0.82, 0.9)))
         record = record.merge(self._comparison_record(staged(progress, "steered, and with the tail lifted", 0.9, 0.98)))
         record = record.assign_attrs(judged_kind=self.kind, judged_legs=self.legs)
@@ -171,10 +179,11 @@ class JointFaults(TwoGroups):
         limbs_only_loss = displacement_change(record.intact_forward.sel(arm="limbs_only"), intact)
         measures |= estimated("loss_intact_limbs_only", limbs_only_loss, "-") | _cells(record)
         if "lifted_forward" in record:
-            measures |= estimated("forward_limbs_tail_lifted", record.lifted_intact_forward, "m")
-            measures |= estimated(
-                "loss_intact_limbs_tail_lifted", displacement_change(record.lifted_intact_forward, intact), "-"
-            )
+            lifted_intact = record.lifted_intact_forward
+            is_lifted = lifted_intact.notnull().values
+            measures |= _estimated("forward_limbs_tail_lifted", lifted_intact, "m", is_lifted)
+            lifted_loss = displacement_change(lifted_intact, intact)
+            measures |= _estimated("loss_intact_limbs_tail_lifted", lifted_loss, "-", is_lifted)
         for joint in record.lost.values:
             name = f"loss_{joint}_{reading}"
             if "steered_forward" in record:
@@ -185,7 +194,7 @@ class JointFaults(TwoGroups):
                 measures |= estimated(f"turn_{joint}_{reading}_steered", heading_changes, "rad")
             if "lifted_forward" in record:
                 lifted_loss = displacement_change(record.lifted_forward, intact).sel(lost=joint)
-                measures |= estimated(f"{name}_limbs_tail_lifted", lifted_loss, "-")
+                measures |= _estimated(f"{name}_limbs_tail_lifted", lifted_loss, "-", is_lifted)
         return measures | _effects(record) | _support_measures(record)
 
     def explain(self, measures: Mapping[str, float]) -> str:
@@ -227,16 +236,20 @@ class JointFaults(TwoGroups):
         """Return the faults of a joint in the reading of the article that is judged."""
         return joint_failure(self.robot, gait, joint, self.kind, self.legs, hold=self.hold)
 
+    @property
+    def _stated_repeats(self) -> int:
+        """Number of robots that walk in conditions that are not judged [-]."""
+        return self.repeats if self.extent == "whole" else min(self.repeats, _STATED_REPEATS)
+
     def _repeat_runs(self, runs: list[Run]) -> list[Run]:
         """Return the repeats of runs, run by run; the i-th repeat of each is the same robot on the same ground."""
         return self.tolerances.repeats(runs, self.repeats, self.seed)
 
-    def _repeats_of(self, runs: list[Run], progress: Any) -> xr.Dataset:
-        """Simulate the repeats of runs, run by run."""
-        repeated = self._repeat_runs(runs)
+    def _walks_of(self, runs: list[Run], progress: Any) -> xr.Dataset:
+        """Simulate runs of the campaign."""
         return require_complete(
             simulate(
-                repeated,
+                runs,
                 duration=self._duration,
                 timestep=self.timestep,
                 sample_stride=_SAMPLING_STRIDE,
@@ -246,14 +259,22 @@ class JointFaults(TwoGroups):
         )
 
     def _campaign(self, progress: Any) -> xr.Dataset:
-        """Simulate every cell and the intact robots in every repeat, and return displacements and tracks."""
+        """Simulate every cell and the intact robots, and return displacements and tracks.
+
+        They are NaN for repeats that are not simulated.
+        """
         cells = list(product(self._joints, KINDS, LEGS_FAILED))
         runs = [
             Run(robot=self.robot, gait=self._gaits[arm], faults=faults)
             for arm in ARMS
             for faults in ((), *(joint_failure(self.robot, self._gaits[arm], *cell, hold=self.hold) for cell in cells))
         ]
-        record = self._repeats_of(runs, progress)
+        counts = [
+            self.repeats,
+            *(self.repeats if legs == self.legs else self._stated_repeats for _, _, legs in cells),
+        ] * len(ARMS)
+        is_walked = (np.arange(self.repeats) < np.array(counts)[:, None]).ravel()
+        record = self._walks_of(list(compress(self._repeat_runs(runs), is_walked)), progress)
         net = (displacement(record).sel(xyz=["x", "y"]) ** 2).sum("xyz") ** 0.5
         quantities = {
             "forward": (displacement(record).sel(xyz="x"), "m", "displacement forward"),
@@ -263,14 +284,18 @@ class JointFaults(TwoGroups):
         }
         distance = time_window(record).centre_of_mass.sel(xyz=["x", "y"])
         tracks = (distance - distance.isel(time=0)).transpose("run", "time", "xyz").values
-        shape = (len(ARMS), 1 + len(cells), self.repeats)
+
+        def of_repeats(values: np.ndarray) -> np.ndarray:
+            """Return the values of the runs by arm, fault and repeat."""
+            every = np.full((is_walked.size, *values.shape[1:]), np.nan)
+            every[is_walked] = values
+            return every.reshape(len(ARMS), 1 + len(cells), self.repeats, *values.shape[1:])
+
         data = xr.Dataset(coords={"arm": list(ARMS), "time": distance.time.values, "on_ground": ["x", "y"]})
         data = data.assign_coords(joint=list(self._joints), kind=list(KINDS), legs=list(LEGS_FAILED))
         for name, (array, unit, long_name) in quantities.items():
-            store_cells(data, name, array.values.reshape(shape), (), unit, long_name)
-        store_cells(
-            data, "track", tracks.reshape(*shape, -1, 2), ("time", "on_ground"), "m", "track of the centre of mass"
-        )
+            store_cells(data, name, of_repeats(array.values), (), unit, long_name)
+        store_cells(data, "track", of_repeats(tracks), ("time", "on_ground"), "m", "track of the centre of mass")
         data["time"].attrs["units"] = "s"
         data["period"] = ((), self.gait.period, {"units": "s"})
         return data
@@ -318,9 +343,8 @@ class JointFaults(TwoGroups):
     def _support(self, progress: Any) -> xr.Dataset:
         """Return the loads that carry the body while the right hind leg, whose pitch joint fails, should swing."""
         runs, step = self._repeat_runs(self._failed_pitch()), coarse_step(self.robot)
-        return support(
-            require_complete(simulate(runs, duration=self._duration, timestep=step, progress=progress)), self.repeats
-        )
+        record = simulate(runs, duration=self._duration, timestep=step, effort=False, progress=progress)
+        return support(require_complete(record), self.repeats)
 
     def _replays(self, progress: Any) -> Mapping[str, Replay]:
         """Return the replay of the crawl with the right hind pitch joint limp, and of the intact one."""
@@ -339,7 +363,7 @@ class JointFaults(TwoGroups):
     def _comparison_record(self, progress: Any) -> xr.Dataset:
         """Simulate the judged faults with steering, and with limbs only and the tail in the air."""
         joints, gaits = self._failing_joints, self._gaits
-        steers = self.steered and self.gait.has("steering")
+        steers = self.extent == "whole" and self.gait.has("steering")
         cases: list[tuple[Gait, tuple[Fault, ...], Control]] = []
         if steers:
             control = Coordinated(heading=HeadingRule()).suited(self.robot, self.gait)
@@ -353,9 +377,13 @@ class JointFaults(TwoGroups):
         if not cases:
             return data
         runs = [Run(robot=self.robot, gait=gait, faults=faults, control=law) for gait, faults, law in cases]
-        record = self._repeats_of(runs, progress)
-        distance = displacement(record).sel(xyz="x").values.reshape(len(cases), self.repeats)
-        heading_changes = heading_change(record).values.reshape(len(cases), self.repeats)
+        count = self._stated_repeats
+        record = self._walks_of(self.tolerances.repeats(runs, count, self.seed), progress)
+        not_walked = ((0, 0), (0, self.repeats - count))
+        distance, heading_changes = (
+            np.pad(values.values.reshape(len(cases), count), not_walked, constant_values=np.nan)
+            for values in (displacement(record).sel(xyz="x"), heading_change(record))
+        )
         dims, metre, joint_count = ("lost", "repeat"), {"units": "m"}, len(joints)
         if steers:
             data["steered_forward"] = (dims, distance[:joint_count], metre | {"long_name": "forward, steered"})
@@ -378,7 +406,7 @@ class JointFaults(TwoGroups):
             "faults_limp": draw_over_time(record, "limp", self.legs),
             "faults_locked": draw_over_time(record, "locked", self.legs),
             "fault_tracks": draw_tracks(record),
-            "fault_places": draw_locking_positions(record),
+            **({"fault_places": draw_locking_positions(record)} if "held_forward" in record else {}),
         }
 
 
@@ -460,12 +488,30 @@ def _cells(record: xr.Dataset) -> Measures:
     measures = Measures()
     for cell in product(record.joint.values, KINDS, LEGS_FAILED):
         indexers, name = dict(zip(_CELL_DIMS, cell, strict=True)), "_".join(cell)
+        values: dict[str, tuple[xr.DataArray, str]] = {}
         for arm in ARMS:
-            measures |= estimated(f"loss_{name}_{arm}", common_change.sel(indexers).sel(arm=arm), "-")
-            measures |= estimated(f"turn_{name}_{arm}", record.turn.sel(indexers).sel(arm=arm), "rad")
-        measures |= estimated(f"own_loss_{name}_limbs_only", own_change.sel(indexers).sel(arm="limbs_only"), "-")
-        measures |= estimated(f"gain_{name}", gain.sel(indexers), "-")
+            values[f"loss_{name}_{arm}"] = common_change.sel(arm=arm), "-"
+            values[f"turn_{name}_{arm}"] = record.turn.sel(arm=arm), "rad"
+        values[f"own_loss_{name}_limbs_only"] = own_change.sel(arm="limbs_only"), "-"
+        values[f"gain_{name}"] = gain, "-"
+        is_walked = record.forward.sel(indexers).notnull().all("arm").values
+        for measure_name, (of_cells, unit) in values.items():
+            measures |= _estimated(measure_name, of_cells.sel(indexers), unit, is_walked)
     return measures
+
+
+def _estimated(name: str, values: xr.DataArray, unit: str, is_walked: np.ndarray) -> Measures:
+    """Return the median over the repeats with its interval, and without one where not every repeat was simulated.
+
+    Args:
+        name: name of the measure.
+        values: values (repeat).
+        unit: unit of the values.
+        is_walked: whether each repeat was simulated.
+    """
+    if is_walked.all():
+        return estimated(name, values, unit)
+    return Measures({name: Measure(float(np.median(values.values[is_walked])), unit)})
 
 
 def _effects(record: xr.Dataset) -> Measures:

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from itertools import product
+from math import nan
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,10 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
         ("With limbs only, of its own displacement [%]", "own_loss_{}_limbs_only", ""),
         ("With limbs only, of that with spine and tail [%]", "loss_{}_limbs_only", "limbs_only"),
     )
+    counts = record.forward.notnull().sum("repeat")
+    few_text = (
+        f" Cells without an interval: of {int(counts.min())} robots." if bool(counts.min() < counts.max()) else ""
+    )
     with styled():
         figure, axes = panels(len(maps), 1, width=5.4, height=len(maps) * (1.0 + 0.46 * len(rows)))
         for ax, (title, name, arm) in zip(axes[:, 0], maps, strict=True):
@@ -55,7 +60,8 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
             change = np.array([[100.0 * measures[measure_name] for measure_name in row_names] for row_names in names])
             ax.imshow(np.clip(change, -100.0, 100.0), cmap="RdBu", vmin=-130.0, vmax=130.0, aspect="auto")
             for (i, j), value in np.ndenumerate(change):
-                _cell(ax, i, j, value, [100.0 * measures[f"{names[i][j]}{end}"] for end in ("_low", "_high")])
+                ends = [100.0 * measures.get(f"{names[i][j]}{end}", nan) for end in ("_low", "_high")]
+                _cell(ax, i, j, value, ends)
             ax.set_xticks(range(len(columns)), [column.replace("_", ",\n") for column in columns])
             ax.set_yticks(range(len(rows)), [_row(row, arm) for row in rows])
             ax.tick_params(length=0)
@@ -64,7 +70,7 @@ def draw_matrix(record: xr.Dataset, measures: Mapping[str, float]) -> Figure:
     return captioned(
         figure,
         "What a failed joint costs: change of displacement [%], median and interval over the repeats, for every "
-        f"reading of the article's 'lost' (limp or locked, one leg or both).{_outwalked(record)}",
+        f"reading of the article's 'lost' (limp or locked, one leg or both).{few_text}{_outwalked(record)}",
     )
 
 
@@ -76,7 +82,7 @@ def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[floa
         row: row of the cell.
         column: column of the cell.
         value: median change [%]; NaN where the intact robot does not move forward.
-        interval: lower and upper bound of the change [%].
+        interval: lower and upper bound of the change [%]; NaN where too few repeats give none.
     """
     colour = "white" if abs(value) > 88.0 else "#222222"
     if not np.isfinite(value):
@@ -84,6 +90,8 @@ def _cell(ax: Axes, row: int, column: int, value: float, interval: Sequence[floa
         return
     ax.text(column, row - 0.14, write(value, "+.0f"), ha="center", va="center", fontsize=11, color=colour)
     lower_bound, upper_bound = interval
+    if not np.isfinite(interval).all():
+        return
     ax.text(
         column,
         row + 0.27,

@@ -15,6 +15,7 @@ from suchus.experiments.catalog.pattern_generator import one_drive
 from suchus.experiments.catalog.pattern_generator.figure import draw_land, draw_locks, draw_ramp, draw_sweep
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -101,6 +102,8 @@ class PatternGeneratorExperiment(Experiment):
     """Duration of the runs from the water [s]."""
     seed: int = 0
     """Seed of the first start; the others follow [-]."""
+    extent: Extent = "whole"
+    """How much is simulated: without the ramp of the drive and the runs from the water for the verdicts."""
 
     def __post_init__(self) -> None:
         """Refuse drives outside the range of the oscillators, and other settings outside their ranges."""
@@ -120,6 +123,10 @@ class PatternGeneratorExperiment(Experiment):
             check.number("water_line", 0.0, 100.0, "m")
             check.number("shore_time", _MIN_SHORE_TIME, 3600.0, "s")
             check.whole("seed", 0, 2**31)
+
+    def for_verdicts(self) -> "PatternGeneratorExperiment":
+        """Return the same question without the ramp of the drive and the runs from the water onto the land."""
+        return replace(self, extent="verdicts")
 
     def quick(self) -> "PatternGeneratorExperiment":
         """Three drives, four starts, short walks."""
@@ -150,17 +157,15 @@ class PatternGeneratorExperiment(Experiment):
             self._starts(name, drive, staged(progress, f"random starts, {name}", start, start + 0.15))
             for name, drive, start in (("walk", self.walk, 0.15), ("swim", self.swim, 0.3))
         ]
-        parts.append(self._ramp())
-        walks, ramped = self._land(progress)
-        stage = staged(progress, "one drive across the shore", 0.85, 1.0)
-        shore_runs = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
-        shore_record = simulate(
-            shore_runs, duration=self.shore_time, sample_stride=_SAMPLE_INTERVAL, effort=False, progress=stage
-        )
-        record = xr.merge([*parts, walks, one_drive.reduced(shore_record, self.water_line)]).assign_attrs(
+        parts.append(self._walk_arms(self._arms, staged(progress, "walks", 0.45, 0.65)))
+        replays: Mapping[str, Replay] = {}
+        if self.extent == "whole":
+            parts += [self._ramp(), self._shore(staged(progress, "one drive across the shore", 0.85, 1.0))]
+            replays = self._replays(self._ramped_walk(staged(progress, "drive ramp", 0.65, 0.85)))
+        record = xr.merge(parts).assign_attrs(
             within=self.within, hold=self.hold, silent_above=_OSCILLATORS.limb_drives[1], walk=self.walk, swim=self.swim
         )
-        return SimulationResult(record=record, replays=self._replays(ramped))
+        return SimulationResult(record=record, replays=replays)
 
     def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the wanted measures; if only turns are wanted, only their walks are simulated."""
@@ -183,7 +188,7 @@ class PatternGeneratorExperiment(Experiment):
             walk = record.sel(arm=arm)
             stride = float(walk.forward / walk.walked / record.attrs["length"])
             measures[f"stride_{arm}"] = Measure(stride, "L/cycle")
-        return measures | one_drive.measures(record)
+        return measures | one_drive.measures(record) if "shore_ahead" in record else measures
 
     def explain(self, measures: Mapping[str, float]) -> str:
         """Return what drive and steering do, and how the oscillators lock, in words."""
@@ -193,7 +198,7 @@ class PatternGeneratorExperiment(Experiment):
         """Draw the ramp, the sweep, the locks, and what drive and steering do on land."""
         record = outcome.record
         return {
-            "drive_ramp": draw_ramp(record, self.robot),
+            **({"drive_ramp": draw_ramp(record, self.robot)} if "ramp_drive" in record else {}),
             "drive_sweep": draw_sweep(record, _OSCILLATORS),
             "phase_locks": draw_locks(record),
             "walking_by_drive": draw_land(record),
@@ -347,13 +352,19 @@ class PatternGeneratorExperiment(Experiment):
             coords={"arm": list(arms)},
         )
 
-    def _land(self, progress: Progress) -> tuple[xr.Dataset, xr.Dataset]:
-        """Return displacement and turns under each control, and the record of the run under the ramp."""
-        walks = self._walk_arms(self._arms, staged(progress, "walks", 0.45, 0.65))
+    def _ramped_walk(self, progress: Progress) -> xr.Dataset:
+        """Return the record of the walk under the ramp of the drive."""
         ramped = Run(robot=self.robot, gait=self.gait, control=PatternGenerator(drive=self._ramped))
         end = START + self.ramp * self.gait.period
-        stage = staged(progress, "drive ramp", 0.65, 0.85)
-        return walks, simulate([ramped], duration=end, sample_stride=2, effort=False, progress=stage)
+        return simulate([ramped], duration=end, sample_stride=2, effort=False, progress=progress)
+
+    def _shore(self, progress: Progress) -> xr.Dataset:
+        """Return the stored part of the runs from the water onto the land by one drive."""
+        runs = one_drive.runs(self.swimmer, self.swimmer_gait, self.walk, self.slope, self.water_line)
+        record = simulate(
+            runs, duration=self.shore_time, sample_stride=_SAMPLE_INTERVAL, effort=False, progress=progress
+        )
+        return one_drive.reduced(record, self.water_line)
 
     def _replays(self, ramped: xr.Dataset) -> Mapping[str, Replay]:
         """Return the replay of the walk under the drive ramp, by file name."""

@@ -22,6 +22,7 @@ from suchus.experiments.experiment import (
     Progress,
     Replay,
     SimulationResult,
+    ends,
     silent,
     staged,
 )
@@ -67,7 +68,7 @@ class Salamander(Experiment):
     cycles: int = 8
     """Cycles that are measured [-]."""
     friction_scales: tuple[float, ...] = (0.7, 1.4)
-    """Factors on the friction of the ground in further runs [-]."""
+    """Factors on the friction of the ground in further runs, for comparison [-]."""
     loaded: float = 0.15
     """Vertical force from which a foot stands [body weight]; hind feet trail with a tenth of the weight in swing."""
 
@@ -76,8 +77,13 @@ class Salamander(Experiment):
         with Checks(self.name(), self) as check:
             check.whole("settle", 0, 1000)
             check.whole("cycles", 1, 1000)
-            check.rising("friction_scales", 0.05, 10.0, "")
+            if self.friction_scales:
+                check.rising("friction_scales", 0.05, 10.0, "")
             check.number("loaded", 0.001, 1.0, "body weight")
+
+    def for_verdicts(self) -> "Salamander":
+        """Return the same question without ground of other friction."""
+        return replace(self, friction_scales=())
 
     def quick(self) -> "Salamander":
         """Return two cycles after the first one, on one further ground."""
@@ -144,8 +150,7 @@ class Salamander(Experiment):
             {
                 "stride_walk": Measure(stride[0], "body length"),
                 "stride_straight_axis": Measure(stride[1], "body length"),
-                "stride_low": Measure(min([stride[0], *stride[2:]]), "body length"),
-                "stride_high": Measure(max([stride[0], *stride[2:]]), "body length"),
+                **(ends("stride", [stride[0], *stride[2:]], "body length") if len(stride) > 2 else {}),
                 "turn_per_cycle": Measure(turn_per_cycle, "rad"),
                 "way_forward": Measure(
                     float(displacement(walk, cycle_window.start, cycle_window.end).sel(xyz="x")), "m"

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import isfinite, nan
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,11 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from suchus.article.paper.animals import ANIMAL
+from suchus.article.verdict import listed
 from suchus.core import rotation
 from suchus.core.checks import Checks
 from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -51,6 +53,7 @@ _TOUCH_LOAD = 0.0029  # load above which the tail touches the ground [body weigh
 _MIN_DISPLACEMENT_FRACTION = 0.01  # in each cycle [body length]; less is no walk, and has no cost of transport
 _OWN_LINE_WIDTH, _OTHER_LINE_WIDTH = 2.0, 0.9
 _FULL, _LINE = "servos of equal torque at any speed", "servos whose torque falls with speed"
+_JUDGED_GAIT = "high_walk"
 _WALKING = ANIMAL["high_walk_speed"]
 
 
@@ -92,6 +95,9 @@ class SpeedRange(Experiment):
     """Number of cycles that are measured, after one more [-]."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01; speeds at 2 ms are the same within 2 %."""
+    extent: Extent = "whole"
+    """How much is simulated: for the verdicts gaits of which nothing is judged at their own cycle time alone, without
+    the other model of the servos."""
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges, and an empty list of gaits."""
@@ -100,6 +106,10 @@ class SpeedRange(Experiment):
             check.whole("cycles", 1, 1000)
             check.number("timestep", 1e-5, control_period(self.robot), "s")
             check.that(len(self.gaits) > 0, f"{self.name()}.gaits is empty; one gait at least is needed")
+
+    def for_verdicts(self) -> "SpeedRange":
+        """Return the same question with a range of cycle times of the high walk alone."""
+        return replace(self, extent="verdicts")
 
     def quick(self) -> "SpeedRange":
         """Two gaits at two cycle times."""
@@ -130,39 +140,52 @@ class SpeedRange(Experiment):
 
     def _walk(self, progress: Progress) -> tuple[xr.Dataset, list[xr.Dataset]]:
         """Return the measured quantities, and the record of the fastest walk of each gait."""
-        rows, fastest, count = [], [], len(self.gaits)
-        factor_groups = [
-            [s for s in self.slower if (s > 1.0) == is_slow] for is_slow in (False, True)
-        ]  # slow walks last longer: a batch of their own
+        fastest, count = [], len(self.gaits)
+        values = np.full((count, 2, len(self.slower), len(_UNITS)), np.nan)
         for i, gait in enumerate(self.gaits):
-            results = [
-                self._measure_gait(
-                    gait, factors, staged(progress, gait.name, (i + 0.5 * j) / count, (i + 0.5 * j + 0.5) / count)
-                )
-                for j, factors in enumerate(factor_groups)
-                if factors
-            ]
-            rows.append(np.concatenate([values for values, _ in results], axis=1))
-            fastest.append(results[0][1])
-        return self._table(np.array(rows)), fastest
+            walked = range(len(self.slower)) if self._has_range(gait) else [self._usual_index]
+            robots = [self.robot, _with_other_servos(self.robot)] if self._has_range(gait) else [self.robot]
+            slow_walks = [[k for k in walked if (self.slower[k] > 1.0) == is_slow] for is_slow in (False, True)]
+            groups = [group for group in slow_walks if group]  # slow walks last longer: a batch of their own
+            records = []
+            for j, group in enumerate(groups):
+                stage = staged(progress, gait.name, (i + j / len(groups)) / count, (i + (j + 1) / len(groups)) / count)
+                quantities, record = self._measure_gait(gait, [self.slower[k] for k in group], robots, stage)
+                values[i, : len(robots), group] = quantities.swapaxes(0, 1)
+                records.append(record)
+            fastest.append(records[0])
+        return self._table(values), fastest
 
-    def _measure_gait(self, gait: Gait, slower: Sequence[float], progress: Any) -> tuple[np.ndarray, xr.Dataset]:
-        """Return ``_UNITS`` at some cycle times of a gait, shape (servo_model, slower, unit), and its fastest walk.
+    def _has_range(self, gait: Gait) -> bool:
+        """Return whether a gait walks at every cycle time, with both models of the servos."""
+        judged = [candidate for candidate in self.gaits if candidate.name == _JUDGED_GAIT] or self.gaits
+        return self.extent == "whole" or gait in judged
+
+    @property
+    def _usual_index(self) -> int:
+        """Index of the factor with which gaits have about their own cycle time."""
+        return int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
+
+    def _measure_gait(
+        self, gait: Gait, slower: Sequence[float], robots: Sequence[Robot], progress: Any
+    ) -> tuple[np.ndarray, xr.Dataset]:
+        """Return ``_UNITS`` at some cycle times of a gait, shape (robot, slower, unit), and the first robot's fastest.
 
         Args:
             gait: the gait.
             slower: factors on its cycle time [-].
+            robots: the robot with each model of the servos.
             progress: called with the fraction that is done.
         """
         max_duration, period = START + (self.cycles + 1) * gait.period * max(slower), control_period(self.robot)
         quantities, records = [], []
-        for i, robot in enumerate((self.robot, _with_other_servos(self.robot))):
+        for i, robot in enumerate(robots):
             runs = [Run(robot=robot, gait=replace(gait, period=gait.period * s)) for s in slower]
             record = simulate(
                 runs,
                 duration=float(np.ceil(round(max_duration / period, 6)) * period),
                 timestep=self.timestep,
-                progress=staged(progress, "", 0.5 * i, 0.5 * i + 0.5),
+                progress=staged(progress, "", i / len(robots), (i + 1) / len(robots)),
             )
             quantities.append([self._measure_walk(record.isel(run=j), run) for j, run in enumerate(runs)])
             records.append(record.isel(run=0))
@@ -212,20 +235,23 @@ class SpeedRange(Experiment):
     def measure(self, record: xr.Dataset) -> Measures:
         """Return speed, cost and posture of every gait, and what is known of animals that walk high."""
         measures = Measures()
-        usual_index = int(np.argmin(np.abs(np.array(self.slower) - 1.0)))
         for name in record.gait.values:
             gait_record = record.sel(gait=name)
             own_record, other_record = (gait_record.sel(servo_model=model) for model in ("own", "other"))
-            usual_cycle = own_record.isel(slower=usual_index)
+            usual_cycle = own_record.isel(slower=self._usual_index)
+            measures[f"speed_{name}"] = Measure(float(usual_cycle.speed), "m/s")
+            if _is_range(gait_record):
+                other_speed = float(other_record.isel(slower=self._usual_index).speed)
+                measures |= {
+                    f"speed_{name}_other_servos": Measure(other_speed, "m/s"),
+                    f"servo_change_{name}": Measure(float(abs(other_record.speed / own_record.speed - 1.0).max()), "-"),
+                    **ranged(f"speed_{name}_slowest", own_record.speed.min(), gait_record.speed.min("slower"), "m/s"),
+                    **ranged(f"speed_{name}_fastest", own_record.speed.max(), gait_record.speed.max("slower"), "m/s"),
+                    f"cost_{name}_least": Measure(float(own_record.cost.min()), "-"),
+                }
             measures |= {
-                f"speed_{name}": Measure(float(usual_cycle.speed), "m/s"),
-                f"speed_{name}_other_servos": Measure(float(other_record.isel(slower=usual_index).speed), "m/s"),
-                f"servo_change_{name}": Measure(float(abs(other_record.speed / own_record.speed - 1.0).max()), "-"),
-                **ranged(f"speed_{name}_slowest", own_record.speed.min(), gait_record.speed.min("slower"), "m/s"),
-                **ranged(f"speed_{name}_fastest", own_record.speed.max(), gait_record.speed.max("slower"), "m/s"),
                 f"cost_{name}": Measure(float(usual_cycle.cost), "-"),
                 f"electrical_cost_{name}": Measure(float(usual_cycle.electrical_cost), "-"),
-                f"cost_{name}_least": Measure(float(own_record.cost.min()), "-"),
                 f"duty_{name}": Measure(float(usual_cycle.duty), "-"),
                 f"froude_{name}": Measure(float(usual_cycle.froude), "-"),
                 f"roll_{name}": Measure(float(usual_cycle.rolled), "rad"),
@@ -253,14 +279,22 @@ class SpeedRange(Experiment):
         """Say how fast and how dear each gait is, and what the other model of the servos changes."""
         names = [gait.name for gait in self.gaits]
         moving = [name for name in names if isfinite(measures[f"cost_{name}"])]
+        of_range = [name for name in moving or names if f"servo_change_{name}" in measures]
         names = moving or names
+        speeds, costs = ("speed_{}_fastest", "cost_{}_least") if of_range == names else ("speed_{}", "cost_{}")
+        fastest = max(names, key=lambda name: measures[speeds.format(name)])
+        cheapest = min(names, key=lambda name: measures[costs.format(name)])
         return self.render_explanation(
             measures,
             moving=moving,
-            fastest=max(names, key=lambda name: measures[f"speed_{name}_fastest"]),
-            cheapest=min(names, key=lambda name: measures[f"cost_{name}_least"]),
+            fastest=fastest,
+            top_speed=measures[speeds.format(fastest)],
+            cheapest=cheapest,
+            least_cost=measures[costs.format(cheapest)],
+            of_range=of_range,
+            is_whole=of_range == names,
             falls=_falling(self.robot)[0] > 0,
-            changed=max(measures[f"servo_change_{name}"] for name in names),
+            changed=max((measures[f"servo_change_{name}"] for name in of_range), default=nan),
             animals=ANIMAL["high_walk_speed"].who,
         )
 
@@ -287,6 +321,11 @@ _UNITS = {
     "tail_touches": "1",
     "tail_lies": "1",
 }
+
+
+def _is_range(gait_record: xr.Dataset) -> bool:
+    """Return whether a gait walked at every cycle time, with both models of the servos."""
+    return bool(gait_record.period.notnull().all())
 
 
 def _with_other_servos(robot: Robot) -> Robot:
@@ -403,10 +442,12 @@ def draw_speed_range(record: xr.Dataset, lines: Mapping[str, Mapping[str, Any]],
         ]
         handles, labels = [*handles, *models, band], [*labels, *servos, f"{_WALKING.who}, high walk"]
         figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=11)
+    at_own_time = [str(gait) for gait in record.gait.values if not _is_range(record.sel(gait=gait))]
+    gaits_text = f" ({listed(at_own_time)} at its own alone)".replace("_", " ") if at_own_time else ""
     return captioned(
         figure,
-        f"Every gait over its cycle time. Thin: legs with {servos[1]}. The cost of servos whose torque falls "
-        f"includes what their motors lose. Band: what {_WALKING.who} do in the high walk.",
+        f"Every gait over its cycle time{gaits_text}. Thin: legs with {servos[1]}. The cost of servos whose torque "
+        f"falls includes what their motors lose. Band: what {_WALKING.who} do in the high walk.",
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, pi
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 from warnings import warn
 
 import numpy as np
@@ -29,6 +29,7 @@ from suchus.experiments.catalog.swim_free.in_flow import (
 )
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -131,10 +132,10 @@ class SwimFree(Experiment):
     first settled cycle on."""
     spread: tuple[str, ...] = tuple(_COEFFICIENT_FACTORS)
     """Coefficients of the water that are varied."""
-    extent: Literal["whole", "verdicts"] = "whole"
+    extent: Extent = "whole"
     """How much swims by sections: the whole, or the motions, the swim that steers and what the verdicts need. Then
-    joints are as they are, no swim is below the surface or at half the time step, and without varied coefficients the
-    speed in real water, whose range they give, is left out."""
+    joints are as they are, no swim is below the surface or at half the time step, nor reversed where a tail alone
+    swims, and without varied coefficients the speed in real water, whose range they give, is left out."""
     level: float = 2.0
     """Depth of the water [m]."""
     depth: float = 0.6
@@ -374,7 +375,7 @@ class SwimFree(Experiment):
             Run(robot=robot, gait=gait, lake=lake, control=control, label=name + ending)
             for ending, robot in self._joints.items()
             for name, gait in motions.items()
-            if not ending or self.extent == "whole"
+            if self.extent == "whole" or (not ending and (name != "reversed" or "tail_only" not in motions))
         ]
         steered_gait = _steered_gait(self.robot, whole_wave, tail=self.turn, trunk=self.trunk_turn)
         runs.append(Run(robot=self.robot, gait=steered_gait, lake=lake, control=control, label="steered"))

@@ -16,6 +16,7 @@ from suchus.experiments.catalog._replayed import replayed
 from suchus.experiments.catalog.terrain.figure import draw_on_bumps, draw_rough
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -127,6 +128,9 @@ class Terrain(Experiment):
     """Duration for which each run walks [s], 0.5 to 3600."""
     timestep: float = 0.005
     """Time step of the physics [s], at most 0.01."""
+    extent: Extent = "whole"
+    """How much is simulated: without the walks of the pictures for the verdicts, and without what walks cost on rough
+    ground."""
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges, and empty lists of surfaces and correlation lengths."""
@@ -145,8 +149,11 @@ class Terrain(Experiment):
             check.number("timestep", 1e-5, control_period(self.robot), "s")
 
     def for_verdicts(self) -> "Terrain":
-        """Return the same question without the robot that switches, and with fewer robots on even ground."""
-        return replace(self, switching=False, flat_robots=min(self.flat_robots, 6))
+        """Return the same question without the robot that switches and the walks of the pictures.
+
+        Fewer robots walk on even ground.
+        """
+        return replace(self, switching=False, flat_robots=min(self.flat_robots, 6), extent="verdicts")
 
     def quick(self) -> "Terrain":
         """Three grounds, one seed, a short walk, two transitions on even ground."""
@@ -186,6 +193,8 @@ class Terrain(Experiment):
         ground_record = self._ground_record(staged(progress, "grounds", 0.0, 0.85))
         ground_record["flat_cost"] = self._flat_costs(ground_record, staged(progress, "even ground", 0.85, 0.9))
         change_record = self._changes(staged(progress, "transitions", 0.9, 0.97))
+        if self.extent == "verdicts":
+            return SimulationResult(record=ground_record.merge(change_record))
         record = self._example(staged(progress, "example", 0.97, 1.0)).merge(ground_record).merge(change_record)
         return SimulationResult(record=record, replays=self._replays(record))
 
@@ -355,11 +364,12 @@ class Terrain(Experiment):
             for arm, (gait, control) in arms.items()
             for seed in seeds
         ]
-        record = simulate(
-            runs, duration=START + self.walked, timestep=self.timestep, sample_stride=5, progress=progress
-        )
-        is_met = [_meets_obstacle(record.isel(run=j), run) for j, run in enumerate(runs)]
-        table = _run_quantities(record, is_met).reshape(len(grounds), len(arms), -1, len(_UNITS))
+        even_count = len(arms) * len(seeds) if self.extent == "verdicts" else len(runs)
+        share, others = even_count / len(runs), runs[even_count:]
+        tables = [self._walk(runs[:even_count], staged(progress, "", 0.0, share), has_cost=True)]
+        if others:
+            tables.append(self._walk(others, staged(progress, "", share, 1.0), has_cost=False))
+        table = np.concatenate(tables).reshape(len(grounds), len(arms), -1, len(_UNITS))
         data = xr.Dataset(
             {
                 name: (("ground", "arm", "seed"), table[..., i], {"units": unit})
@@ -371,6 +381,25 @@ class Terrain(Experiment):
         data["walked"] = ((), self.walked, {"units": "s"})
         data["size_of_robot"] = ((), self._size, {"units": "1", "long_name": "length over that of the article's robot"})
         return data
+
+    def _walk(self, runs: Sequence[Run], progress: Progress, *, has_cost: bool) -> np.ndarray:
+        """Return the quantities of ``_UNITS`` of some runs, shape (run, quantity).
+
+        Args:
+            runs: the runs.
+            progress: called with the fraction that is done.
+            has_cost: whether their cost of transport is measured, which is NaN otherwise.
+        """
+        record = simulate(
+            runs,
+            duration=START + self.walked,
+            timestep=self.timestep,
+            sample_stride=5,
+            effort=has_cost,
+            progress=progress,
+        )
+        is_met = [_meets_obstacle(record.isel(run=j), run) for j, run in enumerate(runs)]
+        return _run_quantities(record, is_met, has_cost=has_cost)
 
     def _flat_costs(self, ground_record: xr.Dataset, progress: Progress) -> xr.DataArray:
         """Return the cost of transport of crawl and high walk on even ground, by condition and robot [-].
@@ -469,7 +498,7 @@ class Terrain(Experiment):
         if not self.high_walk.erect:
             posture_text = "the robot's own gait low, as usual and high"
         return {
-            "postures": draw_on_bumps(self.robot, record, posture_text),
+            **({"postures": draw_on_bumps(self.robot, record, posture_text)} if "shown_height" in record else {}),
             "rough_ground": draw_rough(record, GAIT_LINES),
         }
 
@@ -477,12 +506,13 @@ class Terrain(Experiment):
 _UNITS = {"forward": "m", "aside": "m", "turned": "rad", "fell": "1", "cost": "1", "belly": "1", "met": "1"}
 
 
-def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
+def _run_quantities(record: xr.Dataset, is_met: Sequence[bool], *, has_cost: bool) -> np.ndarray:
     """Return the quantities of ``_UNITS``, shape (run, quantity).
 
     Args:
         record: record of the runs.
         is_met: whether each robot reached the obstacle.
+        has_cost: whether the record holds what the servos do.
     """
     excerpt, displacements = time_window(record), displacement(record)
     columns: Sequence[Any] = (
@@ -490,7 +520,7 @@ def _run_quantities(record: xr.Dataset, is_met: Sequence[bool]) -> np.ndarray:
         displacements.sel(xyz="y"),
         heading_change(record),
         _most_tilt(record) > MAX_TILT,
-        cost_of_transport(record),
+        cost_of_transport(record) if has_cost else np.full(record.sizes["run"], nan),
         (excerpt.belly_force.sel(xyz="z").sum("segment") > _TOUCH * GRAVITY * record.mass).mean("time"),
         is_met,
     )
