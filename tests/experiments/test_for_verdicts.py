@@ -51,13 +51,6 @@ def told_stands(record: xr.Dataset) -> xr.Dataset:
     return record.sel(feedback=["on"]).drop_dims(["direction", "torque", "forebody", "behind"])
 
 
-def compared_crawls(record: xr.Dataset) -> xr.Dataset:
-    """Return the record without the strokes with which the legs alone get as far."""
-    kept = record.isel(run=slice(-1), condition=slice(-1)).copy()
-    del kept.attrs["equal_stroke"]
-    return kept
-
-
 def without_costs(record: xr.Dataset) -> xr.Dataset:
     """Return the record without what the servos' work costs."""
     return record.drop_vars(["repeated_cost_of_transport", "repeated_electrical_cost_of_transport"])
@@ -76,7 +69,6 @@ def judged_walks(record: xr.Dataset) -> xr.Dataset:
 
 SHORTENED: Mapping[str, Callable[[xr.Dataset], xr.Dataset]] = {
     "bipedal_reach": told_stands,
-    "crawl_stability": compared_crawls,
     "displacement": without_costs,
     "feedback": told_walks,
     "joint_faults": walked_faults,

@@ -46,7 +46,7 @@ from suchus.sim.metrics import (
 _EQUAL_DISPLACEMENT = "limbs_only_equal_displacement"
 _SNAPSHOT_CONDITIONS = ("coordinated", "limbs_only", "limbs_tail_lifted")
 """Conditions whose snapshots are evaluated."""
-_STATED = ("limbs_only", "tail_drag")
+_STATED = ("limbs_only", "tail_drag", _EQUAL_DISPLACEMENT)
 """Conditions that decide no word."""
 _CHANGES = (
     ("com_height_pp_change", "com_height_pp", "coordinated", "limbs_only"),
@@ -88,14 +88,10 @@ class CrawlStability(TwoGroups):
     answer_minima: ClassVar[Mapping[str, float]] = {"cycles": 2, "repeats": 6}
 
     extent: Extent = "whole"
-    """How much is simulated: without longer strokes of the legs alone for the verdicts, with fewer robots in conditions
-    that decide no word, and no work of servos."""
+    """How much is simulated: for the verdicts fewer robots in conditions that decide no word, and no work of servos."""
 
     def for_verdicts(self) -> "CrawlStability":
-        """Return the same question without the strokes with which the legs alone get as far.
-
-        Fewer robots walk in conditions that decide no word.
-        """
+        """Return the same question with fewer robots in conditions that decide no word."""
         return replace(self, extent="verdicts")
 
     def quick(self) -> "CrawlStability":
@@ -107,17 +103,17 @@ class CrawlStability(TwoGroups):
         end = START + self.cycles * self.gait.period
         arms = conditions_of(self.robot, self.gait, self.control_group)
         runs = [Run(robot=self.robot, gait=gait, label=name) for name, gait in arms.items()]
-        attrs: dict[str, float] = {}
         is_whole = self.extent == "whole"
-        if is_whole:
-            first_record = simulate(runs[:1], duration=end, progress=staged(progress, "first condition", 0.0, 0.1))
-            stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
-            runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
-            attrs["equal_stroke"] = stroke_factor * self._stroke()
+        first_record = simulate(
+            runs[:1], duration=end, effort=is_whole, progress=staged(progress, "first condition", 0.0, 0.1)
+        )
+        stroke_factor = self._equal_stroke(first_record, end, staged(progress, "equal displacement", 0.1, 0.4))
+        runs.append(Run(robot=self.robot, gait=self.control_group.strode(stroke_factor), label=_EQUAL_DISPLACEMENT))
         record = simulate(runs, duration=end, effort=is_whole, progress=staged(progress, "as designed", 0.4, 0.5))
         built_progress = staged(progress, "robots as built", 0.5, 1.0)
         record = record.merge(self._built(runs, end, built_progress))
-        return SimulationResult(record=record.assign_attrs(attrs), replays=self._replays(record))
+        record.attrs["equal_stroke"] = stroke_factor * self._stroke()
+        return SimulationResult(record=record, replays=self._replays(record))
 
     def simulate_measures(self, measure_names: Collection[str], progress: Progress = silent) -> Measures:
         """Return at least the requested measures; only the conditions that they name are simulated."""
@@ -137,21 +133,15 @@ class CrawlStability(TwoGroups):
         return self.repeated(runs, _quantities, units, end, progress, effort=False, stated=stated)
 
     def _replays(self, record: xr.Dataset) -> Mapping[str, Replay]:
-        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone.
-
-        For the verdicts the legs alone have the same strokes.
-        """
-        conditions = [str(condition) for condition in record.condition.values]
-        is_as_far = _EQUAL_DISPLACEMENT in conditions
-        ghost, legs = (-1, "longer strokes of the legs alone, just as far") if is_as_far else (1, "the legs alone")
+        """Return the replay of the crawl with spine and tail and of that with longer strokes of the legs alone."""
         return replayed(
             "stability_replay.html",
             record.isel(run=0),
             self.robot,
-            ghost=record.isel(run=ghost) if len(conditions) > 1 else None,
-            labels=("spine and tail", "legs alone, as far" if is_as_far else "legs alone"),
-            title="Two ways to get as far" if is_as_far else "Two ways to crawl",
-            caption=f"With spine and tail, and, half transparent, with {legs}.",
+            ghost=record.isel(run=-1),
+            labels=("spine and tail", "legs alone, as far"),
+            title="Two ways to get as far",
+            caption="With spine and tail, and, half transparent, with longer strokes of the legs alone, just as far.",
         )
 
     def _equal_stroke(self, record: xr.Dataset, end: float, progress: Any) -> float:
@@ -186,9 +176,10 @@ class CrawlStability(TwoGroups):
                 values, reference_values = of_robots(record, quantity, arm, reference)
                 measures |= estimated(name, values / reference_values - 1, "-")
         measures |= _designed_changes(record)
-        if "equal_stroke" in record.attrs:
-            measures["stroke_equal_displacement"] = Measure(float(record.attrs["equal_stroke"]), "m")
-        measures["spine_sine_r2"] = Measure(float(spine_sine_share(record.isel(run=0))), "-")
+        measures |= {
+            "stroke_equal_displacement": Measure(float(record.attrs["equal_stroke"]), "m"),
+            "spine_sine_r2": Measure(float(spine_sine_share(record.isel(run=0))), "-"),
+        }
         return measures | self._snapshots(record)
 
     def _snapshots(self, record: xr.Dataset) -> Measures:
@@ -212,7 +203,7 @@ class CrawlStability(TwoGroups):
 
     def draw(self, outcome: Outcome) -> Mapping[str, Any]:
         """Draw height over time, the snapshots, the spread."""
-        arms = [str(arm) for arm in outcome.record.condition.values if arm != _EQUAL_DISPLACEMENT]
+        arms = [str(arm) for arm in outcome.record.condition.values][:-1]
         return {
             "height_of_mass": draw_heights(outcome.record, arms),
             "fluctuation": draw_spreads(outcome.record, arms),

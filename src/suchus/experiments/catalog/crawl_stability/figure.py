@@ -19,37 +19,29 @@ def draw_heights(record: xr.Dataset, names: Sequence[str]) -> Figure:
     """Draw the height of the centre of mass about its mean: at equal commands, then at equal displacement.
 
     Args:
-        record: record of one run per condition, then the legs alone at equal displacement, where they were simulated.
+        record: record of one run per condition, then the legs alone at equal displacement.
         names: names of the conditions, roles of ``style.LINES``; with spine and tail first, limbs only second.
     """
     walk = time_window(record)
     height = walk.centre_of_mass.sel(xyz="z")
     height = height - height.mean("time")
     with styled():
-        is_as_far = record.sizes["run"] > len(names)
-        figure, axes = panels(1 + is_as_far, 1, height=7.0 if is_as_far else 4.2, sharex=True, sharey=True)
-        upper_ax = axes[0, 0]
+        figure, axes = panels(2, 1, height=7.0, sharex=True, sharey=True)
+        upper_ax, lower_ax = axes[:, 0]
         draw_lines(upper_ax, height.isel(run=slice(0, len(names))), names, scale=1000.0)
         upper_ax.set_title("equal commands to the legs")
-        if is_as_far:
-            draw_lines(axes[1, 0], height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
-            axes[1, 0].set_title("equal displacement: longer strokes for the legs alone")
-        for ax in axes[:, 0]:
+        draw_lines(lower_ax, height.isel(run=[0, len(names)]), (names[0], names[1]), scale=1000.0)
+        lower_ax.set_title("equal displacement: longer strokes for the legs alone")
+        for ax in (upper_ax, lower_ax):
             ax.set_ylabel("height of centre of mass\nless its mean [mm]")
             mark_cycles(ax, list(np.arange(START, float(walk.time[-1]) + 0.01, float(walk.period[0]))))
-        if is_as_far:
-            upper_ax.set_xlabel("")
-        legend_height = -0.02 if is_as_far else -0.16
-        upper_ax.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, legend_height), frameon=False)
-    conditions_text = (
-        "Above: all conditions with identical leg commands. Below: the legs alone with strokes long enough to get as "
-        "far as spine and tail do, or with their longest."
-        if is_as_far
-        else "All conditions have identical leg commands."
-    )
+        upper_ax.set_xlabel("")
+        upper_ax.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.02), frameon=False)
     return captioned(
         figure,
-        f"Height of the centre of mass about its mean. {conditions_text} Dotted lines: beginnings of cycles.",
+        "Height of the centre of mass about its mean. Above: all conditions with identical leg commands. Below: the "
+        "legs alone with strokes long enough to get as far as spine and tail do, or with their longest. Dotted lines: "
+        "beginnings of cycles.",
     )
 
 
