@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from functools import reduce
 from itertools import pairwise
 from math import radians
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,7 @@ from suchus.experiments.catalog.feedback.figure import draw_fans, draw_gain, dra
 from suchus.experiments.catalog.feedback.together import Part, simulate_parts
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -161,7 +162,7 @@ class Feedback(Experiment):
     """Standard deviation of the noise on the sensed loads of the feet, as a fraction of the load [-]."""
     disturbances: tuple[str, ...] = DISTURBANCES
     """Names of the disturbances that are simulated; the measures of others are not known."""
-    extent: Literal["whole", "verdicts"] = "whole"
+    extent: Extent = "whole"
     """How much is simulated: the whole, or what the verdicts and their reasons need. Then the law that feels the
     trunk's torque is left out, so are single rules and the heading loop under disturbances in which nothing is told of
     them, and a start ends as soon as it is known whether it converges, see ``known.KnownStarts``; the first of each law

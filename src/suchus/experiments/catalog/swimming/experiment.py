@@ -4,7 +4,7 @@ import json
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import nan
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
@@ -36,6 +36,7 @@ from suchus.experiments.catalog.swimming.ladder import table as ladder_table
 from suchus.experiments.catalog.swimming.rules import LADDER, RULES
 from suchus.experiments.experiment import (
     Experiment,
+    Extent,
     Measure,
     Measures,
     Outcome,
@@ -139,7 +140,7 @@ class PlaneSwims(Experiment):
     """Cells per body length of these [-]."""
     tow: float = 4.0
     """Distance over which the straight body is towed, its drag the mean over the last length [body length]."""
-    extent: Literal["whole", "verdicts"] = "whole"
+    extent: Extent = "whole"
     """How much swims: the whole, or what the verdicts need. Then neither other directions nor other readings of (20)
     swim, a rung of the ladder leaves out the swims of claims on which rungs before it disagree, and the straight body
     is not towed, so that the efficiency is left out."""
