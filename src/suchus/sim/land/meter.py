@@ -121,10 +121,15 @@ class Meter:
         """
         self._history[0] = readings[:, self._columns]
 
-    def record_step(self, step: int) -> None:
-        """Store water forces and sensor readings after a physics step."""
-        self._did[step] = self._acts
-        self._history[step + 1] = self._sensors
+    def record_step(self, step: int, rows: slice = slice(None)) -> None:
+        """Store water forces and sensor readings of some runs after a physics step.
+
+        Args:
+            step: number of the step.
+            rows: the runs.
+        """
+        self._did[step, rows] = self._acts[rows]
+        self._history[step + 1, rows] = self._sensors[rows]
 
     def powers(self, periods: int) -> Float[np.ndarray, "period run servo"]:
         """Return the mean size of the power of each servo in each of some equal parts of the steps [W].
