@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from suchus.article.paper import LEG_CHAIN
 from suchus.core.errors import InvalidDesign, Unreachable
-from suchus.robot.kinematics import dh, leg
+from suchus.robot.kinematics import dh, leg, leg_solution
 
 
 @dataclass(frozen=True)
@@ -98,9 +98,9 @@ def test_points_out_of_reach_are_named():
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e200])
 def test_points_that_are_no_numbers_are_refused(bad):
-    p = np.broadcast_to(np.array([0.156, 0, 0.089]), (3 * leg.CHUNK, 3)).copy()
-    p[2 * leg.CHUNK + 7, 1] = bad
-    with pytest.raises(Unreachable, match=f"1 of {3 * leg.CHUNK}"):
+    p = np.broadcast_to(np.array([0.156, 0, 0.089]), (3 * leg_solution.CHUNK, 3)).copy()
+    p[2 * leg_solution.CHUNK + 7, 1] = bad
+    with pytest.raises(Unreachable, match=f"1 of {3 * leg_solution.CHUNK}"):
         leg.inverse(HIND, p)
 
 
@@ -154,3 +154,16 @@ def test_any_point_gives_a_valid_answer_or_a_sentence(built, p):
     else:
         with pytest.raises(Unreachable, match="out of reach"):
             leg.inverse(built, p)
+
+
+@pytest.mark.parametrize("count", [1, 3, leg_solution.CHUNK])
+def test_legs_of_other_lengths_are_solved_at_once_to_the_same_bytes(count):
+    legs = [HIND, Links(0.05, 0.08, 0.06), Links(0.0, 0.1, 0.12)]
+    angles = np.random.default_rng(8).uniform(-1.0, 1.0, (3, count, 3))
+    points = np.array([leg.forward(one, rows) for one, rows in zip(legs, angles, strict=True)])
+    found, is_reachable = leg_solution.solve(leg_solution.Lengths.of(legs, count), points.reshape(-1, 3))
+    apart = np.array([leg.inverse(one, rows) for one, rows in zip(legs, points, strict=True)])
+    assert is_reachable
+    assert found.tobytes() == apart.tobytes()
+    points[2, -1] = 1.0
+    assert not leg_solution.solve(leg_solution.Lengths.of(legs, count), points.reshape(-1, 3))[1]

@@ -34,7 +34,7 @@ from suchus.robot.motion import (
     trunk_amplitude,
 )
 from suchus.robot.motion.axis import yaw_hinges
-from suchus.robot.motion.limbs import foot_path
+from suchus.robot.motion.limbs import foot_path, in_steps
 from suchus.robot.robots import ROBOTS
 
 LEGS = ("LF", "RF", "LH", "RH")
@@ -450,3 +450,12 @@ def test_servo_names_of_a_given_bend(robot, crawl_gait):
     angle = dict(zip(servo_names(), targets[0], strict=True))
     assert [angle[f"spine_yaw_{i}"] for i in (1, 2, 3)] == pytest.approx([0.2, 0.2, 0.2])
     assert angle["tail_cable"] == angle["spine_pitch_1"] == angle["spine_pitch_2"] == 0.0
+
+
+@pytest.mark.parametrize(
+    "indices", [(), (4,), (0, 1, 2), (12, 14, 16), (16, 14, 12), (2, 1, 0), (0, 1, 3), (5, 5), (7, 3)]
+)
+def test_places_in_steps_are_those_of_their_indices(indices):
+    values = np.arange(40).reshape(2, 20)
+    np.testing.assert_array_equal(values[:, in_steps(indices)], values[:, list(indices)] if indices else values[:, :0])
+    assert isinstance(in_steps(indices), slice) == (indices not in {(), (0, 1, 3), (5, 5)})

@@ -13,7 +13,7 @@ from suchus.core.errors import OutsideLimits, UnknownName, Unreachable
 from suchus.robot.design import Crank, Girdle, Layout, Robot, layout
 from suchus.robot.kinematics import leg as leg_kinematics
 from suchus.robot.kinematics import limb as limb_kinematics
-from suchus.robot.kinematics.leg import Lengths
+from suchus.robot.kinematics.leg_solution import Lengths, solve
 from suchus.robot.kinematics.limb import PlainLeg
 from suchus.robot.motion.gait import Gait
 from suchus.robot.motion.parts import FixedLimbs, FootPath, Limbs, Sweep
@@ -401,7 +401,7 @@ class _Legs:
         count = len(points) // len(self._legs)
         if count != self._count:  # of a batch each control period has the same number
             self._count, self._lengths = count, Lengths.of(self._legs, count)
-        angles, is_reachable = leg_kinematics.solve(self._lengths, points, side=side)
+        angles, is_reachable = solve(self._lengths, points, side=side)
         if not is_reachable:
             for leg, places in zip(self._legs, foot, strict=True):
                 leg_kinematics.inverse(leg, places, side=side)

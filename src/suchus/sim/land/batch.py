@@ -30,7 +30,7 @@ from suchus.sim.model.granular import granular_model
 from suchus.sim.model.wet import wet_model
 from suchus.sim.record import EFFORT
 
-_RUNS_IN_CACHE = 8  # of one thread; measured with the caiman: the time of a step is least from 6 to 12
+_RUNS_IN_CACHE = 8  # measured with the caiman: the time of a step is least from 6 to 12
 _TOO_FAST = 1e3  # [rad/s] or [m/s]; nothing on a robot moves so fast: the physics has diverged
 FAST_ITERATIONS = 10
 """Iterations of the contact solver in fast physics [-]."""
@@ -488,18 +488,17 @@ class SimulationBatch:
         """Return the runs that are stepped together through a control period, and the rows of arrays of each portion.
 
         The physics of some runs stays in the processor's cache from one call to the next, that of a large batch does
-        not. The rows of all portions are those of all runs.
+        not. Several threads hand runs to each other, and gain nothing. The rows of all portions are those of all runs.
 
         Args:
             going: indices of the runs that are stepped; None for all.
             calls: number of calls of the physics in a control period.
         """
         count = len(self.alive) if going is None else len(going)
-        size = _RUNS_IN_CACHE * self.physics.nthread
-        if calls == 1 or count <= size:
+        if calls == 1 or count <= _RUNS_IN_CACHE or self.physics.nthread > 1:
             return [(going, slice(None))]
         sims = np.arange(count) if going is None else going
-        parts = [sims[first : first + size] for first in range(0, count, size)]
+        parts = [sims[first : first + _RUNS_IN_CACHE] for first in range(0, count, _RUNS_IN_CACHE)]
         firsts = [0, *(int(part[0]) for part in parts[1:]), len(self.alive)]
         return [(part, slice(first, end)) for part, (first, end) in zip(parts, pairwise(firsts), strict=True)]
 
