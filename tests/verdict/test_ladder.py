@@ -6,6 +6,7 @@ from math import inf, nan
 import pytest
 
 from suchus.article.verdict import Clause, Rule, Rung, judge, ladder
+from suchus.article.verdict.rule import Reading
 from suchus.core.errors import IncompatibleRecord
 
 RUNGS = (
@@ -129,3 +130,9 @@ def test_the_reason_and_the_table_name_every_model():
 def test_what_a_rung_should_have_measured_is_named():
     with pytest.raises(IncompatibleRecord, match="needs gain_slice_high, which swimming did not measure"):
         judge(RULE, {name: one for name, one in said(theory=0.1, slice=inf).items() if name != "gain_slice_high"})
+
+
+def test_a_number_that_rounds_to_zero_has_no_minus():
+    rows = ladder.rows(ladder.voices(RULE, said(theory=-0.001, slice=(-1e-18, 0.1))), RULE.form)
+    assert [row["number"] for row in rows[:2]] == ["+0%", "+5% (+0% to +10%)"]
+    assert [f"{Reading(-1e-9):{form}}" for form in (".2f", "deg.1f", "mm+.0f", "")] == ["0.00", "0.0", "+0", "-1e-09"]

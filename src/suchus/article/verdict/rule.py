@@ -20,17 +20,24 @@ _UNITS = {"mm": 1e3, "g": 1e3, "ms": 1e3, "MPa": 1e-6}
 class Reading(float):
     """A number whose format may begin with a unit: ``{:mm.1f}`` writes metres as millimetres, ``{:deg.0f}`` degrees.
 
-    The unit itself is left to the sentence. ``mm``, ``g`` and ``ms`` take metres, kilogrammes and seconds.
+    The unit itself is left to the sentence. ``mm``, ``g`` and ``ms`` take metres, kilogrammes and seconds. What is
+    rounded to zero has no minus.
     """
 
     def __format__(self, form: str) -> str:
         """Write the number; a form without a unit is Python's own."""
         if form.startswith("deg"):
-            return format(degrees(self), form.removeprefix("deg"))
+            return _formatted(degrees(self), form.removeprefix("deg"))
         for unit, factor in _UNITS.items():
             if form.startswith((f"{unit}.", f"{unit}+")):
-                return format(factor * float(self), form.removeprefix(unit))
-        return format(float(self), form)
+                return _formatted(factor * float(self), form.removeprefix(unit))
+        return _formatted(float(self), form)
+
+
+def _formatted(number: float, form: str) -> str:
+    """Return a number in a form of Python's, zero without a minus."""
+    sign = form[: len(form) - len(form.lstrip("+- "))]
+    return format(number, f"{sign}z{form.removeprefix(sign)}")
 
 
 def comparison_word(
