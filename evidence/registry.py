@@ -15,6 +15,7 @@ from evidence import (
     probes,
     servo_loads,
     shedding,
+    short_forms,
     tolerance,
     untrained_policies,
     wall_model,
@@ -108,6 +109,11 @@ _OTHERS = (
         name="verdicts", modules=("suchus.article.verdict",),
         renew="suchus reproduce --all && python tools/verdict_table.py out",
         sources=("claims", *EXPERIMENTS),
+    ),
+    Kept(
+        name=short_forms.NAME, modules=("suchus.article.verdict", "suchus.experiments.experiment"),
+        renew="suchus reproduce --out out/short && suchus reproduce --all --out out/whole && "
+        "python -m evidence.short_forms out/short out/whole",
     ),
     Kept(name="bodies", modules=("suchus.apps.cli",), renew="python tools/body_table.py --anew"),
     Kept(

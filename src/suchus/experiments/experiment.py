@@ -17,7 +17,7 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound
 from jinja2.ext import Extension
 
-from suchus.article.verdict import Reading, Rule, Verdict, comparison_word, judge, listed, word_of
+from suchus.article.verdict import Rule, Verdict, comparison_word, judge, listed, word_of, write
 from suchus.core.errors import AmbiguousName, BrokenFile, InvalidDesign
 from suchus.core.intervals import CONFIDENCE, fraction_interval, median_interval
 from suchus.core.progress import Progress, silent, staged
@@ -598,12 +598,6 @@ def templates(folder: Path) -> Environment:
     environment.globals |= {"compared": comparison_word, "listed": listed, "separator": separator}
     environment.globals |= {"either_sign": either_sign, "spanned": spanned}
     return environment
-
-
-def write(value: float, form: str) -> str:
-    """Return a number as text, zero without a minus."""
-    text = format(Reading(value), form)
-    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
 
 
 def either_sign(measures: Mapping[str, float], name: str) -> bool:

@@ -25,6 +25,7 @@ from suchus.article.verdict.rule import (
     interval,
     listed,
     measure_with_interval,
+    write,
 )
 
 __all__ = [
@@ -50,4 +51,5 @@ __all__ = [
     "listed",
     "measure_with_interval",
     "word_of",
+    "write",
 ]

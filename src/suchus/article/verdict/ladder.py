@@ -12,7 +12,7 @@ from math import isfinite, nan
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
-from suchus.article.verdict.rule import Clause, Reading, Rule, Rung, listed
+from suchus.article.verdict.rule import Clause, Rule, Rung, listed, write
 
 NO_REASONS: Mapping[str, str] = MappingProxyType({})
 
@@ -43,7 +43,7 @@ class Voice:
         """Return its number with its spread, in a form of ``Reading``; a dash where there is none."""
         if not isfinite(self.value):
             return "–"
-        lower_text, value, upper_text = (format(Reading(number), form) for number in (self.low, self.value, self.high))
+        lower_text, value, upper_text = (write(number, form) for number in (self.low, self.value, self.high))
         return value if lower_text == upper_text else f"{value} ({lower_text} to {upper_text})"
 
 

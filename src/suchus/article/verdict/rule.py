@@ -4,6 +4,7 @@ What decided it is a sentence whose numbers know how to be written in the unit t
 """
 
 import operator
+import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
@@ -20,24 +21,23 @@ _UNITS = {"mm": 1e3, "g": 1e3, "ms": 1e3, "MPa": 1e-6}
 class Reading(float):
     """A number whose format may begin with a unit: ``{:mm.1f}`` writes metres as millimetres, ``{:deg.0f}`` degrees.
 
-    The unit itself is left to the sentence. ``mm``, ``g`` and ``ms`` take metres, kilogrammes and seconds. What is
-    rounded to zero has no minus.
+    The unit itself is left to the sentence. ``mm``, ``g`` and ``ms`` take metres, kilogrammes and seconds.
     """
 
     def __format__(self, form: str) -> str:
         """Write the number; a form without a unit is Python's own."""
         if form.startswith("deg"):
-            return _formatted(degrees(self), form.removeprefix("deg"))
+            return format(degrees(self), form.removeprefix("deg"))
         for unit, factor in _UNITS.items():
             if form.startswith((f"{unit}.", f"{unit}+")):
-                return _formatted(factor * float(self), form.removeprefix(unit))
-        return _formatted(float(self), form)
+                return format(factor * float(self), form.removeprefix(unit))
+        return format(float(self), form)
 
 
-def _formatted(number: float, form: str) -> str:
-    """Return a number in a form of Python's, zero without a minus."""
-    sign = form[: len(form) - len(form.lstrip("+- "))]
-    return format(number, f"{sign}z{form.removeprefix(sign)}")
+def write(value: float, form: str) -> str:
+    """Return a number as text in a form of ``Reading``, zero without a minus."""
+    text = format(Reading(value), form)
+    return text.removeprefix("-") if not re.search("[1-9a-z]", text) else text
 
 
 def comparison_word(
