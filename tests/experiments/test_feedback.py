@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from suchus.core.intervals import fraction_interval
 from suchus.experiments.catalog.feedback.experiment import ARMS, STARTS, _loop_measures, experiment, start_measures
 from suchus.experiments.catalog.feedback.known import KnownStarts
+from suchus.experiments.catalog.feedback.rules import VARIED
 from suchus.experiments.experiment import silent
 from suchus.robot.control import LAWS, Coordinated, HeadingRule, Kick, LimbLaw
 from suchus.sim.land import Limp, Locked, Run, simulate
@@ -271,3 +273,10 @@ def test_what_is_told_of_a_disturbance_decides_which_controls_walk():
         ("limp_yaw", "steered"),
     }
     assert all(experiment._has_cell(name, arm) for name in experiment.disturbances for arm in ARMS)
+
+
+def test_the_study_of_designs_takes_starts_enough_to_reproduce_the_claim():
+    varied = replace(experiment, **VARIED.settings)
+    assert (varied.unjudged(), varied.too_short()) == ("", "")
+    assert fraction_interval(varied.starts, varied.starts)[0] >= 0.95
+    assert fraction_interval(varied.starts - 1, varied.starts)[0] < 0.95  # one start that fails leaves it undecided
