@@ -58,18 +58,29 @@ def _outcome(folder: Path) -> Any:
     file = folder / "outcome.json"
     if not file.is_file():
         raise IncompatibleRecord(f"there is no {file}; run its experiment first.")
-    return json.loads(file.read_text(encoding="utf-8"))
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise IncompatibleRecord(f"{file} is damaged ({error}); run its experiment again.") from error
 
 
 def main() -> int:
-    """Compare both, keep the result, and print the claims whose words differ; return 1 if there are any, else 0."""
+    """Compare both, keep the result, and print the claims whose words differ.
+
+    Returns:
+        0 if every word is the same, 1 if one differs, 2 if they cannot be compared.
+    """
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("short", type=Path, help="folder of suchus reproduce")
     parser.add_argument("whole", type=Path, help="folder of whole runs")
     arguments = parser.parse_args()
     from evidence import renew  # noqa: PLC0415  the registry imports this module
 
-    experiments = compared(arguments.short, arguments.whole)
+    try:
+        experiments = compared(arguments.short, arguments.whole)
+    except IncompatibleRecord as error:
+        print(f"short_forms: {error}", file=sys.stderr)
+        return 2
     renew.store(NAME, experiments)
     for claim in differing(experiments):
         print(f"{claim}: another word in the short form")

@@ -50,6 +50,24 @@ def test_what_cannot_be_compared_is_refused(folders):
     change(short, "working_space", verdicts=[])
     with pytest.raises(IncompatibleRecord, match="working_space has no word on working_space"):
         short_forms.compared(short, whole)
+    (short / "working_space" / "outcome.json").write_text("{", encoding="utf-8")
+    with pytest.raises(IncompatibleRecord, match="is damaged"):
+        short_forms.compared(short, whole)
     (short / "working_space" / "outcome.json").unlink()
     with pytest.raises(IncompatibleRecord, match="run its experiment first"):
         short_forms.compared(short, whole)
+
+
+def test_the_command_says_what_cannot_be_compared_and_keeps_nothing(folders, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["short_forms", str(folders[0]), "nowhere"])
+    monkeypatch.setattr("evidence.renew.store", lambda *_: pytest.fail("a result was kept"))
+    assert short_forms.main() == 2
+    assert "there is no nowhere" in capsys.readouterr().err
+
+
+def test_the_command_names_a_claim_whose_word_differs(folders, monkeypatch, capsys):
+    change(folders[0], "working_space", verdicts=[{"claim": "working_space", "verdict": "undecided"}])
+    monkeypatch.setattr("sys.argv", ["short_forms", *map(str, folders)])
+    monkeypatch.setattr("evidence.renew.store", lambda *_: None)
+    assert short_forms.main() == 1
+    assert capsys.readouterr().out == "working_space: another word in the short form\n"

@@ -13,8 +13,8 @@ class KnownStarts:
     """Ends random starts of which it is known whether they converge.
 
     A start does not converge that is out of step when less than ``hold`` is left: it ends there, and is counted as a
-    start that goes on is. A start that has been in step for ``hold`` converges: in the whole experiment, where starts
-    go on, none of the article's robot leaves again after more than half of the two cycles.
+    start that goes on is. A start that has been in step for ``hold`` converges. One that would leave again later is
+    counted wrongly; in the whole experiment starts go on, and its figure shows whether any does.
     """
 
     def __init__(self, gait: Gait, cycles: float, hold: float, *, is_shown: Bool[np.ndarray, " run"]) -> None:
